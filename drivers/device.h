@@ -1,0 +1,91 @@
+// A machine that cuts. One thread owns a Device and calls run_once() again and again; every other
+// member may be called from any thread and never waits for the machine.
+
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace leafcutter::drivers {
+
+enum class MachineState { Disconnected, Idle, Run, Hold, Jog, Home, Alarm, Door, Check, Sleep, Unknown };
+
+std::string_view to_string(MachineState state);
+
+struct DeviceStatus {
+    MachineState state = MachineState::Disconnected;
+    std::array<double, 3> machine_position_mm{};
+    std::array<double, 3> work_position_mm{};
+    double feed_mm_per_min = 0.0;
+    double power_s = 0.0;
+    std::array<int, 3> override_percent{100, 100, 100};  // Feed, rapid, power.
+    int alarm_code = 0;                                  // 0: none.
+    std::string message;                                 // Last alarm or error, with its meaning.
+    std::string firmware;
+};
+
+enum class JobOutcome { Running, Done, Aborted, Failed, LinkLost };
+
+struct JobProgress {
+    JobOutcome outcome = JobOutcome::Done;
+    std::size_t lines_total = 0;
+    std::size_t lines_sent = 0;
+    std::size_t lines_acknowledged = 0;
+    std::string reason;  // Why it failed, naming the line.
+};
+
+struct Jog {
+    double dx_mm = 0.0;
+    double dy_mm = 0.0;
+    double feed_mm_per_min = 1000.0;
+};
+
+// Refused: the machine's state or a preflight check forbids it. The message says what to do.
+class Refused : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+class Device {
+public:
+    virtual ~Device() = default;
+
+    virtual std::string uri() const = 0;
+    virtual DeviceStatus status() const = 0;
+    virtual JobProgress progress() const = 0;
+
+    // Queues a program (G-code text). Throws Refused while one runs, in Alarm, or if preflight fails.
+    virtual void start(std::string program) = 0;
+
+    virtual void hold() = 0;    // Feed hold: decelerates, beam off, can be resumed.
+    virtual void resume() = 0;
+    virtual void cancel() = 0;  // Hold, wait until it stands, reset: position kept, beam off.
+    virtual void stop() = 0;    // Emergency: reset at once, waits for nobody.
+    virtual void home() = 0;
+    virtual void unlock() = 0;
+    virtual void jog(const Jog& jog) = 0;
+    virtual void jog_cancel() = 0;
+    virtual void console(std::string line) = 0;  // One line by hand; the reply comes to on_line.
+
+    // Every line received, for a console view. Set before the first run_once(); called by its thread.
+    std::function<void(std::string_view line)> on_line;
+
+    // Works for at most `slice`: reads, feeds the stream, polls status. Throws LinkLost once when the
+    // link is gone; the device is Disconnected from then on.
+    virtual void run_once(std::chrono::milliseconds slice) = 0;
+};
+
+// Opens the device of a URI: grbl:/dev/ttyUSB0?baud=115200, grbl:tcp://host:port, sim:grbl.
+// `sim:grbl` starts a simulated machine of its own behind a pty; `?burn=FILE` keeps its beam log.
+// Throws LinkLost, or std::invalid_argument for a URI it can't read.
+std::unique_ptr<Device> open_device(std::string_view uri);
+
+}  // namespace leafcutter::drivers

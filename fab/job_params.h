@@ -1,0 +1,81 @@
+// Everything a job can be told, as typed values with the defaults of the documentation. JSON comes and
+// goes in server/params; nothing here knows of it.
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/foliation.h"
+#include "geometry/quads/quad_mesh.h"
+
+namespace leafcutter::fab {
+
+struct ScaleParams {
+    // The input's longest bounding box side becomes this long; without it, input units are mm.
+    std::optional<double> longest_side_mm = 300.0;
+};
+
+// The foliation section as written: vertex numbers are those of the input file.
+struct FoliationParams {
+    geometry::FoliationMode mode = geometry::FoliationMode::Auto;
+    geometry::TorusRings torus_rings = geometry::TorusRings::Short;
+    std::optional<std::array<int, 4>> corners;
+};
+
+enum class WeavePattern { Plain, Twill2x2, DoubleWarp, DoubleWeft, Satin5, Basket2x2, Matrix };
+
+struct WeaveParams {
+    WeavePattern pattern = WeavePattern::Plain;
+    std::vector<std::vector<int>> matrix;  // Matrix only: rows of 0 and 1, 1 = warp on top.
+};
+
+enum class ColumnRuns { PerCylinder, Through };
+enum class CellMarks { Ticks, Lines, None };
+
+struct FitParams {
+    ColumnRuns columns = ColumnRuns::PerCylinder;
+    double clearance_mm = 0.2;  // Taken off each long side of a strip.
+    bool crimp = true;          // Lengthen cells for the way over and under crossing strips.
+    double tab_mm = 8.0;        // Length of glue tabs.
+    double max_piece_mm = 900.0;
+    bool labels = true;
+    CellMarks cell_marks = CellMarks::Ticks;
+};
+
+struct MaterialParams {
+    std::string warp = "paper-160-blue";
+    std::string weft = "paper-160-yellow";
+};
+
+enum class Rotation { Free, Half, Quarter, Fixed };  // Any; 0,180; 0,90,180,270; 0.
+
+struct NestingParams {
+    double time_s = 10.0;
+    double spacing_mm = 1.0;
+    double margin_mm = 5.0;
+    Rotation rotation = Rotation::Free;
+    std::uint32_t seed = 1;
+};
+
+enum class Dialect { Grbl, Marlin, Smoothie };
+
+struct OutputParams {
+    Dialect dialect = Dialect::Grbl;
+    std::string device;
+};
+
+struct JobParams {
+    ScaleParams scale;
+    FoliationParams foliation;
+    geometry::GridOptions grid;
+    WeaveParams weave;
+    FitParams fit;
+    MaterialParams material;
+    NestingParams nesting;
+    OutputParams output;
+};
+
+}  // namespace leafcutter::fab

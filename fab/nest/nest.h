@@ -1,0 +1,36 @@
+// Places pieces on as many sheets as needed, without overlap.
+//
+// Equal pieces, options and seed give equal output. The caller bounds time through `context.stop` or
+// `max_evaluations`; a clock never enters.
+
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "fab/job_params.h"
+#include "fab/layout.h"
+#include "geometry/context.h"
+
+namespace leafcutter::fab {
+
+struct NestOptions {
+    double spacing_mm = 1.0;  // Between two outlines, after kerf.
+    double margin_mm = 5.0;   // From the sheet's edge, after kerf.
+    double kerf_mm = 0.0;
+    Rotation rotation = Rotation::Free;
+    std::uint32_t seed = 1;
+    std::int64_t max_evaluations = 2'000'000;
+};
+
+// Nests `pieces` on sheets of `size`; sheet ids count from `first_sheet_id`. Every layout returned is
+// proven: no two outlines closer than spacing + kerf, none outside the margin.
+//
+// Throws Error(BadOption) for a sheet smaller than its margins.
+Layout nest(std::span<const Piece* const> pieces,
+            const SheetSize& size,
+            const NestOptions& options,
+            const geometry::Context& context = {});
+
+}  // namespace leafcutter::fab

@@ -1,0 +1,33 @@
+// Weft and warp strips of a quad mesh, unfolded exactly and made into pieces that can be cut.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fab/job_params.h"
+#include "fab/material.h"
+#include "fab/strip.h"
+#include "geometry/context.h"
+#include "geometry/quads/quad_mesh.h"
+
+namespace leafcutter::fab {
+
+// Ids "W1"… and "P1"…, weft first, each family ordered by smallest quad.
+std::vector<Strip> make_strips(const geometry::QuadMesh& mesh, ColumnRuns columns);
+
+struct PieceLimits {
+    SheetSize usable_sheet;  // A piece's outline must fit into it at some rotation.
+    double thickness_mm = 0.2;
+    double min_width_mm = 1.0;
+};
+
+// Unfolds `strip` and parts it where it is closed, over-long or would overlap itself; adds clearance,
+// crimp allowance, glue tabs and marks. Sets strip.pieces. Outlines never overlap themselves.
+std::vector<Piece> make_pieces(Strip& strip,
+                               const geometry::QuadMesh& mesh,
+                               const FitParams& fit,
+                               const PieceLimits& limits,
+                               std::vector<std::string>& warnings);
+
+}  // namespace leafcutter::fab

@@ -1,0 +1,21 @@
+// Which thread lies on top where weft and warp cross: the weave.
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fab/job_params.h"
+#include "fab/strip.h"
+#include "geometry/quads/quad_mesh.h"
+
+namespace leafcutter::fab {
+
+struct Weave {
+    std::vector<std::uint8_t> warp_on_top;  // Per quad, 0 or 1.
+    std::vector<std::array<int, 2>> seams;  // Neighbouring quads where the pattern breaks.
+};
+
+Weave weave_cells(const geometry::QuadMesh& mesh, const WeaveParams& params);
+
+}  // namespace leafcutter::fab

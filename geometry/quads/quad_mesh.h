@@ -1,0 +1,78 @@
+// The quad mesh: where leaves of F and F* cross, at a wanted strip width.
+//
+// Corners a b c d of a quad: a→b and d→c run along leaves of F (g grows), a→d and b→c along leaves of
+// F* (f grows); counter-clockwise seen from outside. Rows run along F: row i lies between the f-levels
+// i and i+1; column j between the g-levels j and j+1.
+
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/context.h"
+#include "geometry/foliation.h"
+
+namespace leafcutter::geometry {
+
+enum class Spacing { Uniform, Curvature, CurvatureArea };
+enum class Junctions { Conforming, Independent };
+enum class Parity { Even, Any };
+enum class Planarity { Off, Gentle, Full };
+
+struct RowsCols {
+    std::optional<int> rows;
+    std::optional<int> cols;
+};
+
+struct GridOptions {
+    double strip_width_mm = 10.0;         // Mean width of strips: cells = area / width².
+    RowsCols all;                         // Fixed counts for every cylinder, instead of the width.
+    std::vector<RowsCols> per_cylinder;   // Stronger than `all`; may be shorter than the cylinders.
+    Spacing spacing = Spacing::Uniform;
+    Junctions junctions = Junctions::Conforming;
+    Parity parity = Parity::Even;
+    Planarity planar = Planarity::Off;
+    bool even_cells = false;
+    bool half_sag_offset = true;  // Moves vertices half a sagitta off the surface, so that chord
+                                  // errors lie evenly on both sides.
+};
+
+struct QuadAddress {
+    int cylinder = 0;
+    int row = 0;
+    int col = 0;
+};
+
+struct CylinderGrid {
+    ChartShape shape = ChartShape::Rectangle;
+    int rows = 0;
+    int cols = 0;
+    int column_shift = 0;  // Torus: row `rows` continues row 0 this many columns further on.
+    double shear_deg = 0.0;         // Angle by which the grid leaves orthogonality; 0 unless a torus.
+    std::vector<double> f_levels;   // rows + 1
+    std::vector<double> g_levels;   // cols + 1
+};
+
+struct QuadMesh {
+    std::vector<Eigen::Vector3d> vertices;
+    std::vector<std::array<int, 4>> quads;
+    std::vector<QuadAddress> addresses;  // Per quad. Quads are sorted by (cylinder, row, col).
+    std::vector<CylinderGrid> grids;     // Per cylinder.
+
+    // Per quad the area of the surface it stands for: the part of the chart inside its cell, mm².
+    std::vector<double> surface_area;
+};
+
+// Samples the foliation's charts. Vertices are shared inside a cylinder.
+//
+// Throws Error(BadOption) for an impossible count and Error(SelfCheck) where the grid is not manifold,
+// or a quad is inverted.
+QuadMesh build_quad_mesh(const Foliation& foliation,
+                         const GridOptions& options = {},
+                         const Context& context = {});
+
+}  // namespace leafcutter::geometry

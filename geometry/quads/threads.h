@@ -1,0 +1,31 @@
+// The threads of a quad mesh: runs of cells along one family of leaves.
+//
+// A weft thread runs along F: it steps across the edges b–c and d–a. A warp thread runs along F*: it
+// steps across a–b and c–d. Every quad is in exactly one thread of each family.
+
+#pragma once
+
+#include <vector>
+
+#include "geometry/quads/quad_mesh.h"
+
+namespace leafcutter::geometry {
+
+enum class Family { Weft, Warp };
+
+struct Thread {
+    Family family = Family::Weft;
+    bool closed = false;     // The last cell touches the first across the right edge.
+    std::vector<int> quads;  // In walking order: growing g for weft, growing f for warp.
+};
+
+enum class ThreadEnds {
+    AtCriticalLeaves,  // A thread ends where the cylinder ends.
+    Through,           // A thread goes on into the next cylinder where vertices are shared.
+};
+
+// All threads of a family, ordered by their smallest quad index. Follows shared edges only, so that any
+// grid topology works (twisted tori, conforming junctions).
+std::vector<Thread> trace_threads(const QuadMesh& mesh, Family family, ThreadEnds ends);
+
+}  // namespace leafcutter::geometry

@@ -1,0 +1,27 @@
+#include <exception>
+
+#include <CLI/CLI.hpp>
+
+#include "server/cli/command.h"
+
+int main(int argc, char** argv) {
+    using namespace leafcutter::server;
+
+    CLI::App app("Leafcutter: weaves any surface from laser-cut strips");
+    app.set_version_flag("--version", LEAFCUTTER_VERSION);
+    app.require_subcommand(1);
+    CommonOptions common;
+    app.add_flag("--json", common.json, "Errors and progress as JSON lines");
+    app.fallthrough();
+
+    try {
+        app.parse(argc, argv);
+        return kDone;
+    } catch (const CLI::ParseError& error) {
+        const bool asked_for_help = error.get_exit_code() == 0;
+        app.exit(error);
+        return asked_for_help ? kDone : kRefused;
+    } catch (const std::exception& error) {
+        return report_error(error, common);
+    }
+}
