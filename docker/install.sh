@@ -1,0 +1,58 @@
+#!/bin/sh
+# Installs what Leafcutter needs on Debian 12; used by `make setup` and by the Dockerfile.
+#
+# usage: install.sh build|run
+#   build  compilers, libraries, test tools, browser and Node.js
+#   run    only what the finished binary loads
+# Says what it installs and leaves alone what is already there.
+set -eu
+
+RUN_PACKAGES="libopenmesh1 libcholmod3 libopenblas0-serial libcpp-httplib0.11 libspdlog1.10 libfmt9
+    libsqlite3-0 libusb-1.0-0 libpolyclipping22 libsodium23 libssl3 zlib1g"
+BUILD_PACKAGES="g++ cmake ninja-build make pkg-config ccache git ca-certificates
+    libopenmesh-dev libeigen3-dev libsuitesparse-dev libopenblas-serial-dev
+    nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev
+    libcpp-httplib-dev libssl-dev zlib1g-dev libbrotli-dev
+    libsqlite3-dev libsqlitecpp-dev libsodium-dev libusb-1.0-0-dev libpolyclipping-dev
+    libgtest-dev libgmock-dev libbenchmark-dev
+    clang clang-format clang-tidy libclang-rt-14-dev
+    python3 python3-numpy python3-scipy python3-shapely chromium"
+
+case "${1:-}" in
+    run) wanted=$RUN_PACKAGES ;;
+    build) wanted=$BUILD_PACKAGES ;;
+    *) echo "usage: install.sh build|run" >&2; exit 2 ;;
+esac
+
+# Any Node.js from 18 on will do; Debian's own only where there is none.
+if [ "$1" = build ]; then
+    node_major=$(node --version 2>/dev/null | sed 's/^v\([0-9]*\).*/\1/')
+    if [ "${node_major:-0}" -lt 18 ] || ! command -v npm >/dev/null; then
+        wanted="$wanted nodejs npm"
+    fi
+fi
+
+missing=""
+for package in $wanted; do
+    if ! dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed'; then
+        missing="$missing $package"
+    fi
+done
+
+if [ -z "$missing" ]; then
+    echo "setup: every Debian package is there"
+    exit 0
+fi
+
+as_root=""
+if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "setup: needs root or sudo to install:$missing" >&2; exit 1; }
+    as_root="sudo"
+fi
+echo "setup: installing$missing"
+export DEBIAN_FRONTEND=noninteractive
+$as_root apt-get update -qq
+# Recommended packages would pull in a whole scene graph for OpenMesh's header files.
+# shellcheck disable=SC2086
+$as_root apt-get install -y -qq --no-install-recommends $missing >/dev/null
+echo "setup: done"
