@@ -6,11 +6,22 @@
 
 #include <Eigen/Core>
 
+// OpenMesh appends value-initialised points, which Eigen leaves unset until they are assigned: the
+// compiler warns of that from inside these headers.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
 // EigenVectorT.hh specialises a template that the mesh header declares, so it must come second.
 // clang-format off
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/Geometry/EigenVectorT.hh>
 // clang-format on
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 namespace leafcutter::geometry {
 

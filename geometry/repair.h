@@ -1,8 +1,8 @@
 // From polygon soup to an oriented manifold surface: triangulate, weld equal positions, drop
 // degenerate and duplicate faces and unused vertices, orient consistently.
 //
-// All tolerances are relative to the bounding box. What was done is counted; what can't be mended is
-// refused with its place.
+// All tolerances are relative to the bounding box. What was done is counted; what can't be mended
+// is refused with its place.
 
 #pragma once
 
@@ -22,6 +22,7 @@ struct RepairReport {
     std::size_t duplicate_faces_dropped = 0;
     std::size_t unused_vertices_dropped = 0;
     std::size_t faces_reoriented = 0;
+    std::size_t split_vertices = 0;  // Copies made where fans of faces touched in one vertex only.
     std::vector<std::string> warnings;  // Sentences for people.
 };
 
@@ -34,7 +35,8 @@ struct RepairedMesh {
 // Returns the surface that `soup` describes; components may be several, boundaries any number.
 //
 // Throws Error(BadMesh) with code "no-faces", "zero-area", "non-manifold-edges",
-// "non-manifold-vertices", "not-orientable" or "degenerate" and the count and first place of the defect.
+// "non-manifold-vertices", "not-orientable" or "degenerate" and the count and first place of the
+// defect.
 RepairedMesh repair(const PolygonSoup& soup);
 
 }  // namespace leafcutter::geometry

@@ -1,8 +1,8 @@
 // Strict readers for STL (ASCII, binary), OBJ, OFF and PLY (ASCII, both binaries), from bytes.
 //
-// Made for hostile input: no include is followed, counts are checked against the byte size before any
-// allocation, numbers are read with from_chars and must be finite, indices must exist. What a file
-// says is read or refused, never guessed.
+// Made for hostile input: no include is followed, counts are checked against the byte size before
+// any allocation, numbers are read with from_chars and must be finite, indices must exist. What a
+// file says is read or refused, never guessed.
 
 #pragma once
 

@@ -1,0 +1,77 @@
+// `leafcutter inspect MODEL`: topology and defects of a mesh as JSON on stdout.
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "geometry/io/read_mesh.h"
+#include "geometry/repair.h"
+#include "geometry/topology.h"
+#include "server/cli/command.h"
+#include "server/cli/input_file.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json repairs_json(const geometry::RepairReport& report) {
+    return {{"triangulated_polygons", report.triangulated_polygons},
+            {"welded_vertices", report.welded_vertices},
+            {"degenerate_faces_dropped", report.degenerate_faces_dropped},
+            {"duplicate_faces_dropped", report.duplicate_faces_dropped},
+            {"unused_vertices_dropped", report.unused_vertices_dropped},
+            {"faces_reoriented", report.faces_reoriented},
+            {"split_vertices", report.split_vertices}};
+}
+
+Json bounding_box_json(const geometry::Mesh& mesh) {
+    Eigen::Vector3d low = mesh.point(geometry::Mesh::VertexHandle(0));
+    Eigen::Vector3d high = low;
+    for (const auto vertex : mesh.vertices()) {
+        low = low.cwiseMin(mesh.point(vertex));
+        high = high.cwiseMax(mesh.point(vertex));
+    }
+    return {{"min", {low.x(), low.y(), low.z()}}, {"max", {high.x(), high.y(), high.z()}}};
+}
+
+Json inspect(const std::string& path) {
+    const geometry::ReadLimits limits;
+    const std::vector<std::byte> bytes = read_input_file(path, limits.max_bytes);
+    const geometry::RepairedMesh repaired =
+        geometry::repair(geometry::read_mesh(bytes, path, limits));
+    const geometry::Topology topology = geometry::analyse_topology(repaired.mesh);
+    return {{"format", "leafcutter-inspect/1"},
+            {"file", path},
+            {"vertices", topology.vertices},
+            {"edges", topology.edges},
+            {"faces", topology.faces},
+            {"components", topology.components},
+            {"genus", topology.genus},
+            {"boundary_loops", topology.boundary_loops.size()},
+            {"euler", topology.euler},
+            {"orientable", true},
+            {"repairs", repairs_json(repaired.report)},
+            {"fatal", Json::array()},
+            {"warnings", repaired.report.warnings},
+            {"bounding_box", bounding_box_json(repaired.mesh)}};
+}
+
+}  // namespace
+
+void add_inspect_command(CLI::App& app, const CommonOptions& /*common*/) {
+    CLI::App* command = app.add_subcommand("inspect", "Topology and defects of a mesh, as JSON");
+    const auto path = std::make_shared<std::string>();  // Lives as long as the callback.
+    command->add_option("model", *path, "A mesh: .stl .obj .off .ply")->required();
+    command->callback([path] {
+        // File names needn't be UTF-8; JSON must be.
+        const std::string text = inspect(*path).dump(2, ' ', false, Json::error_handler_t::replace);
+        std::printf("%s\n", text.c_str());
+    });
+}
+
+}  // namespace leafcutter::server
