@@ -51,6 +51,8 @@ struct Piece {
     Polyline right;
     std::vector<Bend> bend;
     Ring outline;             // What is cut, before kerf: with clearance, crimp, tabs.
+    Polyline cut_left;        // The rung ends as they come to lie on the outline.
+    Polyline cut_right;
     std::vector<Mark> marks;  // Inside the outline.
 };
 

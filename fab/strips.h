@@ -20,10 +20,13 @@ struct PieceLimits {
     SheetSize usable_sheet;  // A piece's outline must fit into it at some rotation.
     double thickness_mm = 0.2;
     double min_width_mm = 1.0;
+    Rotation rotation = Rotation::Free;  // The rotations that may make it fit.
+    double self_gap_mm = 0.5;            // Distant parts of an outline stay this far apart.
 };
 
-// Unfolds `strip` and parts it where it is closed, over-long or would overlap itself; adds clearance,
-// crimp allowance, glue tabs and marks. Sets strip.pieces. Outlines never overlap themselves.
+// Unfolds `strip` and parts it where it is closed, over-long or would overlap itself; adds
+// clearance, crimp allowance, glue tabs and marks. Sets strip.pieces. Outlines never overlap
+// themselves.
 std::vector<Piece> make_pieces(Strip& strip,
                                const geometry::QuadMesh& mesh,
                                const FitParams& fit,

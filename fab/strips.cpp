@@ -1,0 +1,116 @@
+#include "fab/strips.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "fab/fit.h"
+#include "fab/marks.h"
+#include "fab/split.h"
+#include "fab/unfold.h"
+
+namespace leafcutter::fab {
+
+namespace {
+
+void add_strips(const geometry::QuadMesh& mesh,
+                Family family,
+                geometry::ThreadEnds ends,
+                std::vector<Strip>& strips) {
+    int number = 0;
+    for (geometry::Thread& thread : geometry::trace_threads(mesh, family, ends)) {
+        Strip strip;
+        strip.id = fmt::format("{}{}", family == Family::Weft ? 'W' : 'P', ++number);
+        strip.family = family;
+        strip.closed = thread.closed;
+        strip.quads = std::move(thread.quads);
+        for (const int quad : strip.quads) {
+            const int cylinder = mesh.addresses[static_cast<std::size_t>(quad)].cylinder;
+            const auto& known = strip.cylinders;
+            if (std::find(known.begin(), known.end(), cylinder) == known.end()) {
+                strip.cylinders.push_back(cylinder);
+            }
+        }
+        strips.push_back(std::move(strip));
+    }
+}
+
+Piece to_piece(const Strip& strip, CutPiece& cut, std::string id) {
+    Piece piece;
+    piece.id = std::move(id);
+    piece.strip = strip.id;
+    piece.family = strip.family;
+    piece.first_cell = cut.run.first;
+    piece.cell_count = cut.run.count;
+    const auto cells = static_cast<std::ptrdiff_t>(cut.run.count);
+    piece.left.assign(cut.flat.left.begin(), cut.flat.left.begin() + cells + 1);
+    piece.right.assign(cut.flat.right.begin(), cut.flat.right.begin() + cells + 1);
+    piece.bend.assign(cut.flat.bend.begin(), cut.flat.bend.begin() + cells);
+    piece.outline = cut.fitted.outline;
+    piece.cut_left = cut.fitted.left;
+    piece.cut_right = cut.fitted.right;
+    return piece;
+}
+
+SplitOptions split_options(const FitParams& fit, const PieceLimits& limits) {
+    SplitOptions options;
+    options.fit.clearance_mm = fit.clearance_mm;
+    options.fit.crimp_thickness_mm = fit.crimp ? limits.thickness_mm : 0.0;
+    options.fit.min_width_mm = limits.min_width_mm;
+    options.fit.tab_mm = fit.tab_mm;
+    options.usable_sheet = limits.usable_sheet;
+    options.rotation = limits.rotation;
+    options.max_piece_mm = fit.max_piece_mm;
+    options.self_gap_mm = limits.self_gap_mm;
+    return options;
+}
+
+}  // namespace
+
+std::vector<Strip> make_strips(const geometry::QuadMesh& mesh, ColumnRuns columns) {
+    std::vector<Strip> strips;
+    const auto warp_ends = columns == ColumnRuns::Through ? geometry::ThreadEnds::Through
+                                                          : geometry::ThreadEnds::AtCriticalLeaves;
+    add_strips(mesh, Family::Weft, geometry::ThreadEnds::AtCriticalLeaves, strips);
+    add_strips(mesh, Family::Warp, warp_ends, strips);
+    return strips;
+}
+
+std::vector<Piece> make_pieces(Strip& strip,
+                               const geometry::QuadMesh& mesh,
+                               const FitParams& fit,
+                               const PieceLimits& limits,
+                               std::vector<std::string>& warnings) {
+    const std::vector<WalkedCell> cells = walk_cells(mesh, strip);
+    Parting parting = part_strip(mesh, cells, strip, split_options(fit, limits));
+    std::vector<Piece> pieces;
+    bool narrow = false;
+    bool unlabelled = false;
+    bool too_large = false;
+    for (CutPiece& cut : parting.pieces) {
+        std::string id = fmt::format("{}.{}", strip.id, pieces.size() + 1);
+        const MarkSource source{id, cut.fitted, cut.flat, cells, cut.run, cut.has_tab};
+        Marks marks = make_marks(source, fit);
+        narrow = narrow || cut.fitted.narrow_rungs > 0;
+        unlabelled = unlabelled || !marks.label_fits;
+        too_large = too_large || !cut.fits_sheet;
+        pieces.push_back(to_piece(strip, cut, std::move(id)));
+        pieces.back().marks = std::move(marks.marks);
+    }
+    strip.pieces.clear();
+    for (const Piece& piece : pieces) {
+        strip.pieces.push_back(piece.id);
+    }
+    const auto warn = [&](bool applies, std::string_view what) {
+        if (applies) {
+            warnings.push_back(fmt::format("{}: {}", strip.id, what));
+        }
+    };
+    warn(parting.overlaps > 0, "parted where it would have lain on itself");
+    warn(narrow, fmt::format("narrower than {:g} mm in places", limits.min_width_mm));
+    warn(unlabelled, "too narrow for its label, which is left out");
+    warn(too_large, "a cell larger than the sheet");
+    return pieces;
+}
+
+}  // namespace leafcutter::fab
