@@ -1,0 +1,145 @@
+#include "geometry/cases/annulus.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "geometry/cases/chart_warnings.h"
+#include "geometry/cases/corners.h"
+#include "geometry/harmonic/bijectivity.h"
+#include "geometry/harmonic/chart_map.h"
+#include "geometry/harmonic/split_chords.h"
+#include "geometry/laplacian.h"
+#include "geometry/loops/tree_cotree.h"
+
+namespace leafcutter::geometry {
+namespace {
+
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
+Eigen::VectorXd between_loops(const std::vector<WeightedEdge>& edges,
+                              const std::vector<int>& loop_of_vertex) {
+    std::vector<char> held(loop_of_vertex.size(), 0);
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held.size()));
+    for (std::size_t v = 0; v < held.size(); ++v) {
+        held[v] = loop_of_vertex[v] >= 0 ? 1 : 0;
+        values[static_cast<Eigen::Index>(v)] = loop_of_vertex[v] == 1 ? 1.0 : 0.0;
+    }
+    return HarmonicSolver(edges, held).solve(std::move(values));
+}
+
+// The multivalued harmonic function with natural boundary conditions that rises by one round the
+// ring.
+struct Conjugate {
+    Eigen::VectorXd values;
+    double energy = 0.0;
+};
+
+Conjugate round_the_ring(const std::vector<WeightedEdge>& edges,
+                         const IntrinsicTriangulation& delaunay,
+                         int origin) {
+    std::vector<double> jump;
+    jump.reserve(edges.size());
+    for (const WeightedEdge& edge : edges) {
+        jump.push_back(delaunay.jump[at(edge.half_edge)][0]);
+    }
+    std::vector<char> held(at(delaunay.vertex_count), 0);
+    held[at(origin)] = 1;
+    Conjugate out;
+    out.values =
+        HarmonicSolver(edges, held).solve(Eigen::VectorXd::Zero(delaunay.vertex_count), jump);
+    out.energy = dirichlet_energy(edges, out.values, jump);
+    return out;
+}
+
+// Sets coordinates so that (g, f) is right-handed.
+void set_coordinates(ChartMap& map,
+                     const Eigen::VectorXd& f,
+                     const Conjugate& conjugate,
+                     const Cochain& arc) {
+    const auto set = [&](double scale) {
+        for (std::size_t v = 0; v < map.gf.size(); ++v) {
+            const auto i = static_cast<Eigen::Index>(v);
+            map.gf[v] = {scale * conjugate.values[i], f[i]};
+        }
+        for (std::size_t h = 0; h < arc.size(); ++h) {
+            map.jump[h] = {scale * arc[h], 0.0};
+        }
+    };
+    map.jump.resize(arc.size());
+    set(map.width);
+    if (chart_area(map) < 0.0) {
+        set(-map.width);
+    }
+}
+
+std::vector<std::uint8_t> lines_of_vertices(const std::array<std::vector<int>, 2>& loops,
+                                            std::size_t vertices) {
+    std::vector<std::uint8_t> lines(vertices, 0);
+    for (std::size_t k = 0; k < 2; ++k) {
+        for (const int v : loops[k]) {
+            lines[at(v)] = static_cast<std::uint8_t>(1U << k);
+        }
+    }
+    return lines;
+}
+
+}  // namespace
+
+Foliation foliate_annulus(const TriangleMesh& mesh,
+                          const std::array<std::vector<int>, 2>& loops,
+                          const Context& context) {
+    std::array<std::vector<int>, 2> rings = loops;
+    if (arc_lengths(mesh, rings[1]).back() > arc_lengths(mesh, rings[0]).back()) {
+        std::swap(rings[0], rings[1]);
+    }
+    SplitMesh split = split_chords(mesh, lines_of_vertices(rings, mesh.positions.size()));
+    context.check();
+
+    ChartMap map = start_chart(std::move(split.mesh), std::move(split.source_vertex));
+    std::vector<int> loop_of_vertex(map.gf.size(), -1);
+    for (int k = 0; k < 2; ++k) {
+        for (const int v : rings[at(k)]) {
+            loop_of_vertex[at(v)] = k;
+        }
+    }
+    const Cochain arc = arc_cochain(map.edges, loop_of_vertex, 0, 1);
+    std::vector<Jump> jump(arc.size());
+    std::transform(arc.begin(), arc.end(), jump.begin(), [](int j) { return Jump{j, 0}; });
+    const IntrinsicTriangulation delaunay = intrinsic_delaunay(map.mesh, map.edges, jump);
+    const std::vector<WeightedEdge> edges = cotangent_edges(delaunay);
+    context.report("foliation", 0.2);
+    const Eigen::VectorXd f = between_loops(edges, loop_of_vertex);
+    context.report("foliation", 0.5);
+    const Conjugate conjugate = round_the_ring(edges, delaunay, rings[0].front());
+    context.report("foliation", 0.8);
+
+    const double upper = 2.0 * dirichlet_energy(edges, f);
+    const double lower = 1.0 / (2.0 * conjugate.energy);
+    map.shape = ChartShape::Annulus;
+    map.height = 1.0;
+    map.width = std::sqrt(upper * lower);
+    set_coordinates(map, f, conjugate, arc);
+
+    Foliation foliation;
+    foliation.mode = FoliationMode::Annulus;
+    foliation.graph = {2, {{0, 1, 1.0}}};
+    foliation.energy = 0.5 * upper;
+    foliation.iterations = 1;
+    // The surface lies left of both loops, so g grows along the lower and falls along the upper.
+    std::reverse(rings[1].begin(), rings[1].end());
+    const FlipReport repair =
+        make_bijective(map, {{rings[0], 0, true}, {rings[1], 0, true}}, context);
+    lift_into_domain(map);
+    Cylinder cylinder = finish_cylinder(std::move(map));
+    cylinder.energy = foliation.energy;
+    cylinder.conformal_gap = upper / lower - 1.0;
+    foliation.warnings = chart_warnings(cylinder, repair);
+    foliation.cylinders.push_back(std::move(cylinder));
+    return foliation;
+}
+
+}  // namespace leafcutter::geometry

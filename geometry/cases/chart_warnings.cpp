@@ -1,0 +1,36 @@
+#include "geometry/cases/chart_warnings.h"
+
+#include <array>
+#include <cstdio>
+
+namespace leafcutter::geometry {
+namespace {
+
+// Above this gap the mesh doesn't resolve the surface's shape.
+constexpr double kLargestGap = 0.05;
+
+std::string percent(double ratio) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.1f %%", 100.0 * ratio);
+    return text.data();
+}
+
+}  // namespace
+
+std::vector<std::string> chart_warnings(const Cylinder& cylinder, const FlipReport& repair) {
+    std::vector<std::string> warnings;
+    if (cylinder.conformal_gap > kLargestGap) {
+        warnings.push_back(
+            "the mesh is coarse for its shape: the foliation's modulus is certain to " +
+            percent(cylinder.conformal_gap) + " only, so angles may be off; refine the mesh");
+    }
+    if (repair.whole_chart) {
+        warnings.push_back("flipped triangles were too many to mend one by one (" +
+                           std::to_string(repair.flipped_as_solved) +
+                           "); the whole parameterisation was made again with even weights, which "
+                           "costs right angles; remesh the model");
+    }
+    return warnings;
+}
+
+}  // namespace leafcutter::geometry
