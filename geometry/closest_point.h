@@ -23,7 +23,11 @@ public:
         double distance = 0.0;
         int triangle = -1;
     };
+    // The mesh has at least one triangle.
     Hit query(const Eigen::Vector3d& point) const;
+
+    // The same, faster where `near_triangle` (the hit of a point close by; -1: none) is near.
+    Hit query(const Eigen::Vector3d& point, int near_triangle) const;
 
     double total_area() const;
 

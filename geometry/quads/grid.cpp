@@ -1,0 +1,264 @@
+#include "geometry/quads/grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace leafcutter::geometry {
+
+namespace {
+
+// More is no paper model any more, and would only fill the memory.
+constexpr double kMostCells = 4e6;
+// A torus whose generators are this close to a right angle is cut along them.
+constexpr double kAlignedDeg = 1.0;
+// Weight of the slant against the logarithms of aspect and cell count: 1 degree is as bad as a cell
+// 7 % too long.
+constexpr double kSlantWeight = 4.0;
+
+double square(double x) {
+    return x * x;
+}
+double degrees(double radians) {
+    return radians * 180.0 / std::numbers::pi;
+}
+
+int floor_mod(int value, int modulus) {
+    const int rest = value % modulus;
+    return rest < 0 ? rest + modulus : rest;
+}
+
+int floor_div(int value, int divisor) {
+    return (value - floor_mod(value, divisor)) / divisor;
+}
+
+struct Least {
+    int rows = 1;
+    int cols = 1;
+    bool even_cols = false;
+};
+
+// Fewer than 3 cells around a ring double its edges.
+Least least_counts(ChartShape shape, Parity parity) {
+    const bool even = parity == Parity::Even;
+    switch (shape) {
+        case ChartShape::Rectangle:
+            return {};
+        case ChartShape::Annulus:
+            return {.rows = 1, .cols = even ? 4 : 3, .even_cols = even};
+        case ChartShape::Torus:
+            return {.rows = 3, .cols = even ? 4 : 3, .even_cols = even};
+    }
+    return {};
+}
+
+void check_fixed(const RowsCols& counts, const Least& least, const std::string& path) {
+    if (counts.rows && *counts.rows < least.rows) {
+        throw Error(ErrorKind::BadOption, "too-few-rows",
+                    fmt::format("{}.rows: {} can't carry the surface; use at least {}", path,
+                                *counts.rows, least.rows));
+    }
+    if (counts.cols && (*counts.cols < least.cols || (least.even_cols && *counts.cols % 2 != 0))) {
+        throw Error(
+            ErrorKind::BadOption, "bad-cols",
+            fmt::format("{}.cols: {} can't close a ring; use at least {}{}", path, *counts.cols,
+                        least.cols,
+                        least.even_cols ? ", and an even number (or grid.parity any)" : ""));
+    }
+}
+
+void check_size(double cells, const std::string& path) {
+    if (!(cells <= kMostCells)) {
+        throw Error(ErrorKind::BadOption, "too-many-cells",
+                    fmt::format("{}: asks for {:.3g} cells; at most {:.0f} are made, so use wider "
+                                "strips",
+                                path, cells, kMostCells));
+    }
+}
+
+std::vector<int> counts_near(double wanted, int least, const std::optional<int>& fixed) {
+    if (fixed) {
+        return {*fixed};
+    }
+    std::vector<int> counts;
+    const int low = static_cast<int>(std::floor(wanted)) - 2;
+    for (int count = std::max(least, low); count <= std::max(least + 3, low + 5); ++count) {
+        counts.push_back(count);
+    }
+    return counts;
+}
+
+struct Candidate {
+    int rows = 0;
+    int cols = 0;
+    int shift = 0;
+    double cost = 0.0;
+};
+
+// Whole column shifts to consider for a torus of `cols` columns: none if it is (nearly) square on.
+std::vector<int> shifts_near(const Cylinder& chart, int cols) {
+    const bool aligned = std::abs(degrees(std::atan2(chart.shear, chart.height))) <= kAlignedDeg;
+    if (chart.shape != ChartShape::Torus || aligned) {
+        return {0};
+    }
+    const int low = static_cast<int>(std::floor(chart.shear * cols / chart.width));
+    return {low, low + 1};
+}
+
+double slant_of(const Cylinder& chart, int cols, int shift) {
+    return (chart.shear - shift * chart.width / cols) / chart.height;
+}
+
+std::vector<double> even_levels(double length, int count) {
+    std::vector<double> levels;
+    levels.reserve(static_cast<std::size_t>(count) + 1);
+    for (int i = 0; i < count; ++i) {
+        levels.push_back(length * i / count);
+    }
+    levels.push_back(length);
+    return levels;
+}
+
+Candidate best_candidate(const Cylinder& chart, const GridWish& wish, const Least& least) {
+    const double aspect = chart.height / chart.width;
+    double cells = wish.cells;
+    if (wish.counts.rows && wish.counts.cols) {
+        cells = static_cast<double>(*wish.counts.rows) * *wish.counts.cols;
+    } else if (wish.counts.rows) {
+        cells = square(*wish.counts.rows) / aspect;
+    } else if (wish.counts.cols) {
+        cells = square(*wish.counts.cols) * aspect;
+    }
+    check_size(cells, wish.path);
+    const bool torus = chart.shape == ChartShape::Torus;
+    Candidate best;
+    for (const int rows : counts_near(std::sqrt(cells * aspect), least.rows, wish.counts.rows)) {
+        for (const int cols :
+             counts_near(std::sqrt(cells / aspect), least.cols, wish.counts.cols)) {
+            for (const int shift : shifts_near(chart, cols)) {
+                if ((least.even_cols && cols % 2 != 0) ||
+                    (least.even_cols && torus && (rows + shift) % 2 != 0)) {
+                    continue;
+                }
+                const double count = static_cast<double>(rows) * cols;
+                const double cost = square(std::log(count / cells)) +
+                                    square(std::log(aspect * cols / rows)) +
+                                    square(kSlantWeight * slant_of(chart, cols, shift));
+                if (best.rows == 0 || cost < best.cost) {
+                    best = {.rows = rows, .cols = cols, .shift = shift, .cost = cost};
+                }
+            }
+        }
+    }
+    return best;
+}
+
+// A torus that is only slanted by its own angle, not by rounding: said as that angle.
+double shear_deg(const Cylinder& chart, const Candidate& chosen) {
+    return chart.shape == ChartShape::Torus
+               ? degrees(std::atan(slant_of(chart, chosen.cols, chosen.shift)))
+               : 0.0;
+}
+
+}  // namespace
+
+CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
+    const Least least = least_counts(chart.shape, wish.parity);
+    check_fixed(wish.counts, least, wish.path);
+    const Candidate chosen = best_candidate(chart, wish, least);
+    if (chosen.rows == 0) {
+        throw Error(ErrorKind::BadOption, "odd-rows",
+                    fmt::format("{}.rows: {} closes the rings of this torus with a fault in the "
+                                "weave; use an even number (or grid.parity any)",
+                                wish.path, wish.counts.rows.value_or(0)));
+    }
+    check_size(static_cast<double>(chosen.rows) * chosen.cols, wish.path);
+    return {.shape = chart.shape,
+            .rows = chosen.rows,
+            .cols = chosen.cols,
+            .column_shift = chosen.shift,
+            .shear_deg = shear_deg(chart, chosen),
+            .f_levels = even_levels(chart.height, chosen.rows),
+            .g_levels = even_levels(chart.width, chosen.cols)};
+}
+
+ChartGrid::ChartGrid(const Cylinder& chart, CylinderGrid grid)
+    : grid_(std::move(grid)), width_(chart.width), height_(chart.height) {
+    if (closed_along()) {
+        slant_ = slant_of(chart, grid_.cols, grid_.column_shift);
+    }
+}
+
+int ChartGrid::vertex(int row, int col) const {
+    if (closed_along()) {
+        const int turns = floor_div(row, grid_.rows);
+        row -= turns * grid_.rows;
+        col -= turns * grid_.column_shift;
+    }
+    if (closed_across()) {
+        col = floor_mod(col, grid_.cols);
+    }
+    return row * vertex_cols() + col;
+}
+
+int ChartGrid::cell(int row, int col) const {
+    if (closed_along()) {
+        const int turns = floor_div(row, grid_.rows);
+        row -= turns * grid_.rows;
+        col -= turns * grid_.column_shift;
+    }
+    if (closed_across()) {
+        col = floor_mod(col, grid_.cols);
+    }
+    return row * grid_.cols + col;
+}
+
+double ChartGrid::f_level(int row) const {
+    const int turns = closed_along() ? floor_div(row, grid_.rows) : 0;
+    return grid_.f_levels[static_cast<std::size_t>(row - turns * grid_.rows)] + turns * height_;
+}
+
+double ChartGrid::s_level(int col) const {
+    const int turns = closed_across() ? floor_div(col, grid_.cols) : 0;
+    return grid_.g_levels[static_cast<std::size_t>(col - turns * grid_.cols)] + turns * width_;
+}
+
+namespace {
+
+// Largest index of a non-empty ascending list whose value is at most `value`; 0 if there is none.
+int last_at_most(const std::vector<double>& levels, double value) {
+    const auto above = std::upper_bound(levels.begin(), levels.end(), value);
+    return std::max(0, static_cast<int>(above - levels.begin()) - 1);
+}
+
+}  // namespace
+
+int ChartGrid::row_at(double f) const {
+    if (!closed_along()) {
+        return std::min(last_at_most(grid_.f_levels, f), grid_.rows - 1);
+    }
+    const int turns = static_cast<int>(std::floor(f / height_));
+    return turns * grid_.rows + last_at_most(grid_.f_levels, f - turns * height_);
+}
+
+int ChartGrid::col_at(double s) const {
+    if (!closed_across()) {
+        return std::min(last_at_most(grid_.g_levels, s), grid_.cols - 1);
+    }
+    const int turns = static_cast<int>(std::floor(s / width_));
+    return turns * grid_.cols + last_at_most(grid_.g_levels, s - turns * width_);
+}
+
+Eigen::Vector2d ChartGrid::straight(const Eigen::Vector2d& gf) const {
+    return {gf.x() - slant_ * gf.y(), gf.y()};
+}
+
+Eigen::Vector2d ChartGrid::unstraight(const Eigen::Vector2d& sf) const {
+    return {sf.x() + slant_ * sf.y(), sf.y()};
+}
+
+}  // namespace leafcutter::geometry

@@ -1,0 +1,301 @@
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "geometry/closest_point.h"
+#include "geometry/quads/quad_edges.h"
+#include "geometry/quads/quad_mesh.h"
+#include "tests/geometry/charts.h"
+
+namespace leafcutter::geometry {
+namespace {
+
+using Eigen::Vector3d;
+
+GridOptions counts(int rows, int cols) {
+    GridOptions options;
+    options.all = {.rows = rows, .cols = cols};
+    return options;
+}
+
+GridOptions width_mm(double width) {
+    GridOptions options;
+    options.strip_width_mm = width;
+    return options;
+}
+
+int euler(const QuadMesh& mesh) {
+    return static_cast<int>(mesh.vertices.size() + mesh.quads.size()) -
+           find_neighbours(mesh.quads).edges;
+}
+
+double sum(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+const Vector3d& corner(const QuadMesh& mesh, std::size_t quad, std::size_t which) {
+    return mesh.vertices[static_cast<std::size_t>(mesh.quads[quad][which])];
+}
+
+std::string refusal(const Foliation& foliation, const GridOptions& options, ErrorKind kind) {
+    try {
+        build_quad_mesh(foliation, options);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), kind);
+        return error.what();
+    }
+    return "accepted";
+}
+
+TEST(QuadMesh, OfAFlatSquareIsTheExactGrid) {
+    const QuadMesh mesh = build_quad_mesh(testing::flat_rectangle(40.0, 30.0, 7, 9), counts(3, 4));
+    ASSERT_EQ(mesh.quads.size(), 12U);
+    ASSERT_EQ(mesh.vertices.size(), 20U);
+    for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
+        const QuadAddress& at = mesh.addresses[i];
+        const Vector3d a(10.0 * at.col, 10.0 * at.row, 0.0);
+        EXPECT_LT((corner(mesh, i, 0) - a).norm(), 1e-12);
+        EXPECT_LT((corner(mesh, i, 1) - a - Vector3d(10, 0, 0)).norm(), 1e-12);
+        EXPECT_LT((corner(mesh, i, 2) - a - Vector3d(10, 10, 0)).norm(), 1e-12);
+        EXPECT_LT((corner(mesh, i, 3) - a - Vector3d(0, 10, 0)).norm(), 1e-12);
+        EXPECT_NEAR(mesh.surface_area[i], 100.0, 1e-10);
+    }
+}
+
+TEST(QuadMesh, TakesSquareCellsOfTheWishedWidth) {
+    const QuadMesh mesh = build_quad_mesh(testing::flat_rectangle(210.0, 300.0), width_mm(10.0));
+    EXPECT_EQ(mesh.grids[0].rows, 30);
+    EXPECT_EQ(mesh.grids[0].cols, 21);
+}
+
+TEST(QuadMesh, GivesSquareCellsWhereOneCountIsFixed) {
+    GridOptions options;
+    options.all.rows = 12;
+    const QuadMesh mesh = build_quad_mesh(testing::flat_rectangle(210.0, 300.0), options);
+    EXPECT_EQ(mesh.grids[0].rows, 12);
+    EXPECT_NEAR(mesh.grids[0].cols, 8.4, 1.0);
+}
+
+TEST(QuadMesh, PrefersTheCountsOfTheCylinder) {
+    GridOptions options = counts(5, 5);
+    options.per_cylinder = {{.rows = 2, .cols = 3}};
+    const QuadMesh mesh = build_quad_mesh(testing::flat_rectangle(10.0, 10.0), options);
+    EXPECT_EQ(mesh.quads.size(), 6U);
+}
+
+TEST(QuadMesh, ClosesRingsEvenlyForThePlainWeave) {
+    const Foliation cylinder = testing::round_cylinder(35.0, 100.0);
+    for (const double width : {3.0, 7.0, 11.0, 17.0, 1000.0}) {
+        const QuadMesh mesh = build_quad_mesh(cylinder, width_mm(width));
+        EXPECT_EQ(mesh.grids[0].cols % 2, 0);
+        EXPECT_GE(mesh.grids[0].cols, 4);
+        EXPECT_EQ(euler(mesh), 0);
+        EXPECT_EQ(find_neighbours(mesh.quads).boundary_edges, 2 * mesh.grids[0].cols);
+        EXPECT_EQ(find_neighbours(mesh.quads).faults, 0);
+    }
+}
+
+TEST(QuadMesh, PutsRingsOfACylinderAtExactHeights) {
+    GridOptions options = counts(4, 6);
+    options.half_sag_offset = false;
+    const QuadMesh mesh = build_quad_mesh(testing::round_cylinder(10.0, 20.0), options);
+    for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
+        EXPECT_NEAR(corner(mesh, i, 0).z(), 5.0 * mesh.addresses[i].row, 1e-12);
+        EXPECT_NEAR(corner(mesh, i, 2).z(), 5.0 * mesh.addresses[i].row + 5.0, 1e-12);
+        EXPECT_NEAR(corner(mesh, i, 0).head<2>().norm(), 10.0, 1e-12);
+    }
+}
+
+TEST(QuadMesh, FacesOutwards) {
+    const QuadMesh mesh = build_quad_mesh(testing::round_torus(100.0, 25.0), width_mm(10.0));
+    for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
+        const Vector3d normal = (corner(mesh, i, 2) - corner(mesh, i, 0))
+                                    .cross(corner(mesh, i, 3) - corner(mesh, i, 1));
+        const Vector3d centre = 0.25 * (corner(mesh, i, 0) + corner(mesh, i, 1) +
+                                        corner(mesh, i, 2) + corner(mesh, i, 3));
+        const Vector3d core = 100.0 * Vector3d(centre.x(), centre.y(), 0.0).normalized();
+        EXPECT_GT(normal.dot(centre - core), 0.0);
+    }
+}
+
+TEST(QuadMesh, OfATorusIsClosedWithEveryVertexOnFourQuads) {
+    const QuadMesh mesh = build_quad_mesh(testing::round_torus(100.0, 25.0), width_mm(9.0));
+    EXPECT_EQ(euler(mesh), 0);
+    const QuadNeighbours found = find_neighbours(mesh.quads);
+    EXPECT_EQ(found.boundary_edges, 0);
+    EXPECT_EQ(found.faults, 0);
+    EXPECT_EQ(mesh.vertices.size(), mesh.quads.size());
+    EXPECT_EQ(mesh.grids[0].column_shift, 0);
+    EXPECT_EQ(mesh.grids[0].rows % 2, 0);
+    EXPECT_EQ(mesh.grids[0].cols % 2, 0);
+}
+
+TEST(QuadMesh, ClosesASlantedTorusAfterAWholeShift) {
+    const Foliation torus = testing::slanted_torus(157.0, 630.0, 50.0);
+    const double own_deg = std::atan(50.0 / 630.0) * 180.0 / std::numbers::pi;
+    for (const double width : {4.0, 9.0, 15.0}) {
+        const QuadMesh mesh = build_quad_mesh(torus, width_mm(width));
+        const CylinderGrid& grid = mesh.grids[0];
+        EXPECT_NE(grid.column_shift, 0);
+        EXPECT_EQ((grid.rows + grid.column_shift) % 2, 0);
+        EXPECT_LT(std::abs(grid.shear_deg), 0.5 * own_deg);
+        EXPECT_EQ(euler(mesh), 0);
+        EXPECT_EQ(find_neighbours(mesh.quads).boundary_edges, 0);
+        EXPECT_EQ(find_neighbours(mesh.quads).faults, 0);
+        // No edge is longer than a few cells: the seam joins what belongs together.
+        for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                EXPECT_LT((corner(mesh, i, k) - corner(mesh, i, (k + 1) % 4)).norm(), 3 * width);
+            }
+        }
+    }
+}
+
+TEST(QuadMesh, KeepsAnAlmostSquareTorusAligned) {
+    const double shear = 630.0 * std::tan(0.9 * std::numbers::pi / 180.0);
+    const QuadMesh mesh =
+        build_quad_mesh(testing::slanted_torus(157.0, 630.0, shear), width_mm(5.0));
+    EXPECT_EQ(mesh.grids[0].column_shift, 0);
+    EXPECT_NEAR(mesh.grids[0].shear_deg, 0.9, 1e-9);
+}
+
+TEST(QuadMesh, StandsForTheWholeSurface) {
+    for (const Foliation& foliation :
+         {testing::flat_rectangle(210.0, 300.0), testing::round_cylinder(35.0, 100.0),
+          testing::round_torus(100.0, 25.0), testing::slanted_torus(157.0, 630.0, 50.0)}) {
+        const double area = testing::area_of(foliation.cylinders[0].mesh);
+        for (const double width : {3.0, 8.0, 30.0}) {
+            const QuadMesh mesh = build_quad_mesh(foliation, width_mm(width));
+            EXPECT_NEAR(sum(mesh.surface_area), area, 1e-9 * area);
+        }
+    }
+}
+
+TEST(QuadMesh, SplitsTheAreaOfARoundTorusAsTheFormulaSays) {
+    // The cell between tube angles stands for its share of 2 pi r (R t + r sin t).
+    const Foliation torus = testing::round_torus(100.0, 25.0, 192, 64);
+    const QuadMesh mesh = build_quad_mesh(torus, counts(16, 8));
+    const double root = std::sqrt(100.0 * 100.0 - 25.0 * 25.0);
+    const auto tube_angle = [&](double g) {
+        const double half = 0.5 * g * root / 25.0 - 0.5 * std::numbers::pi;
+        return 2.0 * std::atan(std::sqrt(125.0 / 75.0) * std::tan(half));
+    };
+    const auto band = [](double angle) { return 25.0 * (100.0 * angle + 25.0 * std::sin(angle)); };
+    const auto& levels = mesh.grids[0].g_levels;
+    for (std::size_t col = 1; col + 1 < 8; ++col) {
+        const double exact = (band(tube_angle(levels[col + 1])) - band(tube_angle(levels[col]))) *
+                             2.0 * std::numbers::pi / 16.0;
+        EXPECT_NEAR(mesh.surface_area[col], exact, 5e-3 * exact);
+    }
+}
+
+TEST(QuadMesh, PutsVerticesOnTheSurfaceWithoutOffset) {
+    const Foliation torus = testing::round_torus(100.0, 25.0);
+    GridOptions options = width_mm(9.0);
+    options.half_sag_offset = false;
+    const QuadMesh mesh = build_quad_mesh(torus, options);
+    const ClosestPoint surface(torus.cylinders[0].mesh);
+    for (const Vector3d& vertex : mesh.vertices) {
+        EXPECT_LT(surface.query(vertex).distance, 1e-11);
+    }
+}
+
+TEST(QuadMesh, OffsetHalvesTheSagOfARoundCylinder) {
+    const QuadMesh mesh =
+        build_quad_mesh(testing::round_cylinder(10.0, 20.0, 960, 2), counts(2, 12));
+    const double sag = 10.0 * (1.0 - std::cos(std::numbers::pi / 12.0));
+    for (const Vector3d& vertex : mesh.vertices) {
+        // Both quads at a vertex lean by half a cell: their mean normal is that much shorter.
+        EXPECT_NEAR(vertex.head<2>().norm(), 10.0 + 0.5 * sag * std::cos(std::numbers::pi / 12.0),
+                    1e-3 * sag);
+    }
+}
+
+TEST(QuadMesh, KeepsBoundaryVerticesOnTheBoundary) {
+    GridOptions options = width_mm(4.0);
+    options.half_sag_offset = false;
+    const QuadMesh mesh = build_quad_mesh(testing::flat_rectangle(33.0, 21.0, 8, 5), options);
+    double low_x = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
+        if (mesh.addresses[i].col == 0) {
+            EXPECT_EQ(corner(mesh, i, 0).x(), 0.0);
+        }
+        if (mesh.addresses[i].row + 1 == mesh.grids[0].rows) {
+            EXPECT_DOUBLE_EQ(corner(mesh, i, 2).y(), 21.0);
+        }
+        low_x = std::min(low_x, corner(mesh, i, 0).x());
+    }
+    EXPECT_EQ(low_x, 0.0);
+}
+
+TEST(QuadMesh, RefusesCountsThatCannotCarryTheTopology) {
+    const Foliation cylinder = testing::round_cylinder(35.0, 100.0);
+    EXPECT_NE(refusal(cylinder, counts(3, 2), ErrorKind::BadOption).find("grid.cols: 2"),
+              std::string::npos);
+    EXPECT_NE(refusal(cylinder, counts(3, 7), ErrorKind::BadOption).find("even"),
+              std::string::npos);
+    EXPECT_NE(refusal(cylinder, counts(0, 8), ErrorKind::BadOption).find("at least 1"),
+              std::string::npos);
+    const Foliation torus = testing::round_torus(100.0, 25.0);
+    EXPECT_NE(refusal(torus, counts(2, 8), ErrorKind::BadOption).find("grid.rows: 2"),
+              std::string::npos);
+    EXPECT_NE(refusal(torus, counts(7, 8), ErrorKind::BadOption).find("grid.rows: 7"),
+              std::string::npos);
+    GridOptions own;
+    own.per_cylinder = {{.rows = std::nullopt, .cols = 1}};
+    EXPECT_NE(refusal(torus, own, ErrorKind::BadOption).find("grid.cylinders[0].cols"),
+              std::string::npos);
+}
+
+TEST(QuadMesh, TakesOddCountsWhereParityIsFree) {
+    GridOptions options = counts(7, 9);
+    options.parity = Parity::Any;
+    const QuadMesh mesh = build_quad_mesh(testing::round_torus(100.0, 25.0), options);
+    EXPECT_EQ(mesh.quads.size(), 63U);
+}
+
+TEST(QuadMesh, RefusesWidthsThatMakeNoSense) {
+    const Foliation square = testing::flat_rectangle(100.0, 100.0);
+    for (const double width : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), 1e-6}) {
+        EXPECT_NE(refusal(square, width_mm(width), ErrorKind::BadOption).find("grid"),
+                  std::string::npos);
+    }
+}
+
+TEST(QuadMesh, SaysByPathWhatIsNotBuiltYet) {
+    const Foliation square = testing::flat_rectangle(100.0, 100.0);
+    GridOptions options;
+    options.planar = Planarity::Full;
+    EXPECT_EQ(refusal(square, options, ErrorKind::NotSupported).find("grid.planar"), 0U);
+    options = {};
+    options.even_cells = true;
+    EXPECT_EQ(refusal(square, options, ErrorKind::NotSupported).find("grid.even_cells"), 0U);
+}
+
+TEST(QuadMesh, KeepsSeveralCylindersApart) {
+    Foliation two = testing::flat_rectangle(100.0, 100.0);
+    two.cylinders.push_back(testing::round_cylinder(20.0, 50.0).cylinders[0]);
+    GridOptions options = width_mm(10.0);
+    EXPECT_EQ(refusal(two, options, ErrorKind::NotSupported).find("grid.junctions"), 0U);
+    options.junctions = Junctions::Independent;
+    const QuadMesh mesh = build_quad_mesh(two, options);
+    ASSERT_EQ(mesh.grids.size(), 2U);
+    EXPECT_EQ(euler(mesh), 1 + 0);
+    EXPECT_EQ(mesh.addresses.front().cylinder, 0);
+    EXPECT_EQ(mesh.addresses.back().cylinder, 1);
+}
+
+TEST(QuadMesh, StopsWhenAsked) {
+    std::stop_source source;
+    source.request_stop();
+    Context context;
+    context.stop = source.get_token();
+    EXPECT_THROW(build_quad_mesh(testing::flat_rectangle(9.0, 9.0), {}, context), Cancelled);
+}
+
+}  // namespace
+}  // namespace leafcutter::geometry
