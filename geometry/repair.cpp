@@ -272,6 +272,10 @@ RepairedMesh repair(const PolygonSoup& soup) {
     report.welded_vertices = welded.welded_vertices;
     report.degenerate_faces_dropped += welded.degenerate_faces;
     report.duplicate_faces_dropped += welded.duplicate_faces;
+    if (welded.slits > 0) {
+        report.warnings.push_back(fmt::format(
+            "{} slits, boundaries whose sides touch all along, were kept open", welded.slits));
+    }
     if (triangles.empty()) {
         throw bad_mesh("zero-area", "zero area: every face repeats a corner");
     }

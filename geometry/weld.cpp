@@ -184,10 +184,12 @@ std::vector<Side> sides_between_places(std::span<const Triangle> triangles,
     return sides;
 }
 
+using SidePair = std::pair<std::uint32_t, std::uint32_t>;
+
 // Unites the ends of two open sides that lie at the same two places.
 void unite_sides(std::span<const Triangle> triangles,
                  const Places& places,
-                 std::pair<std::uint32_t, std::uint32_t> sides,
+                 const SidePair& sides,
                  DisjointSets& sets) {
     const std::uint32_t a = side_start(triangles, sides.first);
     const std::uint32_t b = side_end(triangles, sides.first);
@@ -196,6 +198,86 @@ void unite_sides(std::span<const Triangle> triangles,
     const bool head_to_tail = places[a] == places[d];
     sets.unite(a, head_to_tail ? d : c);
     sets.unite(b, head_to_tail ? c : d);
+}
+
+// Tells a slit from a seam. A boundary that lies on itself all along is a slit made on purpose, as
+// between the lips of a face, if its surface has other boundaries; on a surface that would be
+// closed without it, it is a seam of the file. Seams between boundaries, or along a part of one,
+// are always seams.
+class Slits {
+public:
+    Slits(std::span<const Triangle> triangles,
+          std::span<const std::uint32_t> open,
+          std::size_t vertices)
+        : triangles_(triangles), boundaries_(vertices), pieces_(vertices), loops_(vertices) {
+        for (const std::uint32_t side : open) {
+            boundaries_.unite(side_start(triangles, side), side_end(triangles, side));
+        }
+        for (const Triangle& t : triangles) {
+            pieces_.unite(t[0], t[1]);
+            pieces_.unite(t[0], t[2]);
+        }
+        for (const std::uint32_t side : open) {
+            ++loop_of(side).unmatched;
+        }
+    }
+
+    // Removes the pairs that would close a slit; returns how many slits there are.
+    std::size_t remove_from(std::vector<SidePair>& pairs, std::span<const std::uint32_t> open);
+
+private:
+    struct Loop {
+        std::size_t unmatched = 0;
+        bool alone = true;  // Matched with itself only.
+        bool counted = false;
+    };
+    Loop& loop_of(std::uint32_t side) {
+        return loops_[boundaries_.find(side_start(triangles_, side))];
+    }
+    std::uint32_t piece_of(std::uint32_t side) {
+        return pieces_.find(side_start(triangles_, side));
+    }
+    void match(const std::vector<SidePair>& pairs);
+
+    std::span<const Triangle> triangles_;
+    DisjointSets boundaries_;  // Of vertices, joined along open sides.
+    DisjointSets pieces_;      // Of vertices, joined by faces.
+    std::vector<Loop> loops_;  // By representative in boundaries_.
+};
+
+void Slits::match(const std::vector<SidePair>& pairs) {
+    std::vector<char> matched(3 * triangles_.size(), 0);
+    for (const SidePair& pair : pairs) {
+        for (const std::uint32_t side : {pair.first, pair.second}) {
+            loop_of(side).unmatched -= matched[side] == 0 ? 1 : 0;
+            matched[side] = 1;
+        }
+        if (&loop_of(pair.first) != &loop_of(pair.second)) {
+            loop_of(pair.first).alone = false;
+            loop_of(pair.second).alone = false;
+            pieces_.unite(side_start(triangles_, pair.first), side_start(triangles_, pair.second));
+        }
+    }
+}
+
+std::size_t Slits::remove_from(std::vector<SidePair>& pairs, std::span<const std::uint32_t> open) {
+    match(pairs);
+    std::vector<char> stays_open(loops_.size(), 0);  // By representative in pieces_.
+    for (const std::uint32_t side : open) {
+        if (loop_of(side).unmatched > 0) {
+            stays_open[piece_of(side)] = 1;
+        }
+    }
+    std::size_t slits = 0;
+    std::erase_if(pairs, [&](const SidePair& pair) {
+        Loop& loop = loop_of(pair.first);
+        const bool is_slit =
+            loop.alone && loop.unmatched == 0 && stays_open[piece_of(pair.first)] != 0;
+        slits += is_slit && !loop.counted ? 1 : 0;
+        loop.counted = loop.counted || is_slit;
+        return is_slit;
+    });
+    return slits;
 }
 
 std::size_t drop_degenerate(std::vector<Triangle>& triangles) {
@@ -264,11 +346,16 @@ void weld_exactly(std::span<const Eigen::Vector3d> positions,
     if (triangles.size() != before) {
         open = open_sides(triangles);
     }
+    std::vector<SidePair> pairs;
     for_each_edge(sides_between_places(triangles, open, places), [&](std::span<const Side> sides) {
         for (std::size_t i = 1; i < sides.size(); ++i) {
-            unite_sides(triangles, places, {sides[0].index, sides[i].index}, sets);
+            pairs.emplace_back(sides[0].index, sides[i].index);
         }
     });
+    result.slits = Slits(triangles, open, positions.size()).remove_from(pairs, open);
+    for (const SidePair& pair : pairs) {
+        unite_sides(triangles, places, pair, sets);
+    }
     apply(sets, triangles);
     result.degenerate_faces += drop_degenerate(triangles);
 }
@@ -287,21 +374,22 @@ void weld_nearly(std::span<const Eigen::Vector3d> positions,
         return;
     }
     const Places places = grid.clusters();
-    DisjointSets trial = sets;
-    bool joined = false;
+    std::vector<SidePair> pairs;
     for_each_edge(sides_between_places(triangles, open, places), [&](std::span<const Side> sides) {
-        if (sides.size() != 2) {
-            return;
-        }
-        const std::uint32_t from = places[side_start(triangles, sides[0].index)];
-        const std::uint32_t to = places[side_end(triangles, sides[1].index)];
-        if (from == to) {
-            unite_sides(triangles, places, {sides[0].index, sides[1].index}, trial);
-            joined = true;
+        const bool head_to_tail =
+            sides.size() == 2 && places[side_start(triangles, sides[0].index)] ==
+                                     places[side_end(triangles, sides[1].index)];
+        if (head_to_tail) {
+            pairs.emplace_back(sides[0].index, sides[1].index);
         }
     });
-    if (!joined) {
+    result.slits = Slits(triangles, open, positions.size()).remove_from(pairs, open);
+    if (pairs.empty()) {
         return;
+    }
+    DisjointSets trial = sets;
+    for (const SidePair& pair : pairs) {
+        unite_sides(triangles, places, pair, trial);
     }
     std::vector<Triangle> welded = triangles;
     apply(trial, welded);

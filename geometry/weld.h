@@ -18,6 +18,7 @@ struct WeldResult {
     std::size_t welded_vertices = 0;
     std::size_t degenerate_faces = 0;  // Dropped.
     std::size_t duplicate_faces = 0;   // Dropped.
+    std::size_t slits = 0;             // Boundaries that lie on themselves and were kept so.
 };
 
 // Rewrites `triangles` to use the representatives.
