@@ -1,0 +1,311 @@
+#include "server/params.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "server/json_reader.h"
+#include "server/params_names.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+using fab::JobParams;
+using geometry::FoliationMode;
+using nlohmann::json;
+
+template <typename Value>
+void read_choice(ObjectReader& reader,
+                 std::string_view key,
+                 Value& target,
+                 const Names<Value>& names) {
+    reader.choice<Value>(key, target, names);
+}
+
+constexpr double kLargestLengthMm = 100'000.0;
+constexpr Range kPositiveLength{0.0, kLargestLengthMm, true};
+constexpr Range kLength{0.0, kLargestLengthMm};
+constexpr Range kCount{1.0, 100'000.0};
+
+void read_scale(ObjectReader& reader, fab::ScaleParams& scale) {
+    const json* units = reader.get("units");
+    const json* side = reader.get("longest_side_mm");
+    if (units != nullptr && side != nullptr) {
+        refuse_param(reader.path_of("units"), "not together with longest_side_mm");
+    }
+    if (units != nullptr) {
+        if (read_text(*units, reader.path_of("units")) != "mm") {
+            refuse_param(reader.path_of("units"), "must be mm");
+        }
+        scale.longest_side_mm.reset();
+    }
+    if (side != nullptr) {
+        scale.longest_side_mm =
+            read_number(*side, reader.path_of("longest_side_mm"), kPositiveLength);
+    }
+}
+
+// Keys whose shape is checked and whose use is refused, as long as nothing computes them.
+void read_later_lists(ObjectReader& reader) {
+    for (const char* key : {"loops", "sources", "sinks"}) {
+        if (const json* value = reader.get(key)) {
+            if (!value->is_array()) {
+                refuse_param(reader.path_of(key), "must be a list of loops");
+            }
+            for (std::size_t i = 0; i < value->size(); ++i) {
+                read_integers((*value)[i], fmt::format("{}[{}]", reader.path_of(key), i));
+            }
+            if (!value->empty()) {
+                refuse_unsupported(reader.path_of(key), "loops chosen by hand");
+            }
+        }
+    }
+    if (const json* value = reader.get("poles")) {
+        if (read_integers(*value, reader.path_of("poles")).size() != 2) {
+            refuse_param(reader.path_of("poles"), "must be two vertices");
+        }
+        refuse_unsupported(reader.path_of("poles"), "spheres");
+    }
+}
+
+void read_punctures(ObjectReader& reader) {
+    const json* value = reader.get("punctures");
+    if (value == nullptr) {
+        return;
+    }
+    const std::string path = reader.path_of("punctures");
+    if (value->is_string()) {
+        const std::string name = value->get<std::string>();
+        if (name != "auto" && name != "none") {
+            refuse_param(path, "must be auto, none or a list of punctures");
+        }
+        return;
+    }
+    if (!value->is_array()) {
+        refuse_param(path, "must be auto, none or a list of punctures");
+    }
+    for (std::size_t i = 0; i < value->size(); ++i) {
+        ObjectReader puncture((*value)[i], fmt::format("{}[{}]", path, i));
+        int vertex = 0;
+        double radius_mm = 0.0;
+        puncture.integer("vertex", vertex, {});
+        puncture.number("radius_mm", radius_mm, kPositiveLength);
+        puncture.finish();
+    }
+    if (!value->empty()) {
+        refuse_unsupported(path, "punctures chosen by hand");
+    }
+}
+
+void read_singularities(ObjectReader& reader) {
+    const json* value = reader.get("singularities");
+    if (value == nullptr) {
+        return;
+    }
+    const std::string path = reader.path_of("singularities");
+    if (!value->is_array()) {
+        refuse_param(path, "must be a list");
+    }
+    for (std::size_t i = 0; i < value->size(); ++i) {
+        ObjectReader singularity((*value)[i], fmt::format("{}[{}]", path, i));
+        int near = 0;
+        singularity.integer("near", near, {});
+        singularity.finish();
+    }
+    if (!value->empty()) {
+        refuse_unsupported(path, "singularities chosen by hand");
+    }
+}
+
+void read_weights(ObjectReader& reader) {
+    const json* value = reader.get("weights");
+    if (value == nullptr || (value->is_string() && value->get<std::string>() == "auto")) {
+        return;
+    }
+    const std::string path = reader.path_of("weights");
+    if (!value->is_array()) {
+        refuse_param(path, "must be auto or a list of numbers");
+    }
+    for (std::size_t i = 0; i < value->size(); ++i) {
+        read_number((*value)[i], fmt::format("{}[{}]", path, i), {0.0, 1e6, true});
+    }
+    refuse_unsupported(path, "weights of the metric graph");
+}
+
+void read_corners(ObjectReader& reader, fab::FoliationParams& foliation) {
+    const json* value = reader.get("corners");
+    if (value == nullptr) {
+        return;
+    }
+    const std::string path = reader.path_of("corners");
+    const std::vector<int> corners = read_integers(*value, path);
+    if (corners.size() != 4 || std::set<int>(corners.begin(), corners.end()).size() != 4) {
+        refuse_param(path, "must be four different vertices");
+    }
+    foliation.corners = std::array<int, 4>{corners[0], corners[1], corners[2], corners[3]};
+}
+
+void refuse_later_modes(ObjectReader& reader, const fab::FoliationParams& foliation) {
+    constexpr std::array kComputed = {FoliationMode::Auto, FoliationMode::Disk,
+                                      FoliationMode::Annulus, FoliationMode::Torus};
+    if (std::find(kComputed.begin(), kComputed.end(), foliation.mode) == kComputed.end()) {
+        refuse_unsupported(reader.path_of("mode"), name_of(kModes, foliation.mode));
+    }
+    const Names<int> pants = {{"reeb", 0}, {"handle-loops", 1}, {"tunnel-loops", 2}, {"user", 3}};
+    int chosen_pants = 0;
+    read_choice(reader, "pants", chosen_pants, pants);
+    if (chosen_pants != 0) {
+        refuse_unsupported(reader.path_of("pants"), "pants decompositions");
+    }
+    const Names<int> functions = {{"auto", 0}, {"harmonic", 0}, {"x", 1},
+                                  {"y", 1},    {"z", 1},        {"fiedler", 1}};
+    int function = 0;
+    read_choice(reader, "function", function, functions);
+    if (function != 0) {
+        refuse_unsupported(reader.path_of("function"), "a function for the pants decomposition");
+    }
+}
+
+void read_foliation(ObjectReader& reader, fab::FoliationParams& foliation) {
+    read_choice(reader, "mode", foliation.mode, kModes);
+    read_choice(reader, "torus_rings", foliation.torus_rings, kTorusRings);
+    read_corners(reader, foliation);
+    refuse_later_modes(reader, foliation);
+    read_weights(reader);
+    read_later_lists(reader);
+    read_punctures(reader);
+    read_singularities(reader);
+}
+
+geometry::RowsCols read_rows_cols(ObjectReader& reader) {
+    geometry::RowsCols counts;
+    if (const json* rows = reader.get("rows")) {
+        counts.rows = read_integer(*rows, reader.path_of("rows"), kCount);
+    }
+    if (const json* cols = reader.get("cols")) {
+        counts.cols = read_integer(*cols, reader.path_of("cols"), kCount);
+    }
+    return counts;
+}
+
+void refuse_later_grids(const ObjectReader& reader, const geometry::GridOptions& grid) {
+    if (grid.spacing != geometry::Spacing::Uniform) {
+        refuse_unsupported(reader.path_of("spacing"), name_of(kSpacings, grid.spacing));
+    }
+    if (grid.planar != geometry::Planarity::Off) {
+        refuse_unsupported(reader.path_of("planar"), name_of(kPlanarities, grid.planar));
+    }
+    if (grid.even_cells) {
+        refuse_unsupported(reader.path_of("even_cells"), "even cells");
+    }
+}
+
+void read_grid(ObjectReader& reader, geometry::GridOptions& grid) {
+    reader.number("strip_width_mm", grid.strip_width_mm, kPositiveLength);
+    grid.all = read_rows_cols(reader);
+    if (const json* value = reader.get("cylinders")) {
+        const std::string path = reader.path_of("cylinders");
+        if (!value->is_array()) {
+            refuse_param(path, "must be a list");
+        }
+        grid.per_cylinder.clear();
+        for (std::size_t i = 0; i < value->size(); ++i) {
+            ObjectReader cylinder((*value)[i], fmt::format("{}[{}]", path, i));
+            grid.per_cylinder.push_back(read_rows_cols(cylinder));
+            cylinder.finish();
+        }
+    }
+    read_choice(reader, "spacing", grid.spacing, kSpacings);
+    read_choice(reader, "junctions", grid.junctions, kJunctions);
+    read_choice(reader, "parity", grid.parity, kParities);
+    read_choice(reader, "planar", grid.planar, kPlanarities);
+    reader.boolean("even_cells", grid.even_cells);
+    reader.boolean("half_sag_offset", grid.half_sag_offset);
+    refuse_later_grids(reader, grid);
+}
+
+std::vector<std::vector<int>> read_matrix(const json& value, const std::string& path) {
+    constexpr std::size_t kLargest = 64;
+    if (!value.is_array() || value.empty() || value.size() > kLargest) {
+        refuse_param(path, "must be a pattern's name or a matrix of 1 to 64 rows");
+    }
+    std::vector<std::vector<int>> matrix;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        const std::string row_path = fmt::format("{}[{}]", path, i);
+        matrix.push_back(read_integers(value[i], row_path));
+        const std::vector<int>& row = matrix.back();
+        if (row.empty() || row.size() > kLargest || row.size() != matrix.front().size()) {
+            refuse_param(row_path, "rows must be equally long, 1 to 64 entries");
+        }
+        if (std::any_of(row.begin(), row.end(), [](int entry) { return entry > 1; })) {
+            refuse_param(row_path, "entries must be 0 or 1");
+        }
+    }
+    return matrix;
+}
+
+void read_weave(ObjectReader& reader, fab::WeaveParams& weave) {
+    const json* pattern = reader.get("pattern");
+    if (pattern != nullptr && pattern->is_array()) {
+        weave.matrix = read_matrix(*pattern, reader.path_of("pattern"));
+        weave.pattern = fab::WeavePattern::Matrix;
+    } else {
+        read_choice(reader, "pattern", weave.pattern, kPatterns);
+    }
+}
+
+void read_fit(ObjectReader& reader, fab::FitParams& fit) {
+    read_choice(reader, "columns", fit.columns, kColumnRuns);
+    reader.number("clearance_mm", fit.clearance_mm, kLength);
+    reader.boolean("crimp", fit.crimp);
+    reader.number("tab_mm", fit.tab_mm, kLength);
+    reader.number("max_piece_mm", fit.max_piece_mm, {0.0, 20'000.0, true});
+    reader.boolean("labels", fit.labels);
+    read_choice(reader, "cell_marks", fit.cell_marks, kCellMarks);
+}
+
+void read_material(ObjectReader& reader, fab::MaterialParams& material) {
+    reader.text("warp", material.warp);
+    reader.text("weft", material.weft);
+}
+
+void read_nesting(ObjectReader& reader, fab::NestingParams& nesting) {
+    reader.number("time_s", nesting.time_s, {0.0, 86'400.0, true});
+    reader.number("spacing_mm", nesting.spacing_mm, kLength);
+    reader.number("margin_mm", nesting.margin_mm, kLength);
+    read_choice(reader, "rotation", nesting.rotation, kRotations);
+    int seed = static_cast<int>(nesting.seed);
+    reader.integer("seed", seed, {});
+    nesting.seed = static_cast<std::uint32_t>(seed);
+}
+
+void read_output(ObjectReader& reader, fab::OutputParams& output) {
+    read_choice(reader, "dialect", output.dialect, kDialects);
+    reader.text("device", output.device);
+}
+
+}  // namespace
+
+JobParams params_from_json(const json& params) {
+    JobParams result;
+    ObjectReader reader(params, "");
+    reader.object("scale", [&](ObjectReader& part) { read_scale(part, result.scale); });
+    reader.object("foliation", [&](ObjectReader& part) { read_foliation(part, result.foliation); });
+    reader.object("grid", [&](ObjectReader& part) { read_grid(part, result.grid); });
+    reader.object("weave", [&](ObjectReader& part) { read_weave(part, result.weave); });
+    reader.object("fit", [&](ObjectReader& part) { read_fit(part, result.fit); });
+    reader.object("material", [&](ObjectReader& part) { read_material(part, result.material); });
+    reader.object("nesting", [&](ObjectReader& part) { read_nesting(part, result.nesting); });
+    reader.object("output", [&](ObjectReader& part) { read_output(part, result.output); });
+    reader.finish();
+    return result;
+}
+
+}  // namespace leafcutter::server

@@ -1,0 +1,82 @@
+#include <nlohmann/json.hpp>
+
+#include "server/params.h"
+#include "server/params_names.h"
+
+namespace leafcutter::server {
+
+using nlohmann::json;
+
+namespace {
+
+json rows_cols_to_json(const geometry::RowsCols& counts) {
+    json result = json::object();
+    if (counts.rows) {
+        result["rows"] = *counts.rows;
+    }
+    if (counts.cols) {
+        result["cols"] = *counts.cols;
+    }
+    return result;
+}
+
+json grid_to_json(const geometry::GridOptions& grid) {
+    json result = rows_cols_to_json(grid.all);
+    result["strip_width_mm"] = grid.strip_width_mm;
+    result["cylinders"] = json::array();
+    for (const geometry::RowsCols& counts : grid.per_cylinder) {
+        result["cylinders"].push_back(rows_cols_to_json(counts));
+    }
+    result["spacing"] = name_of(kSpacings, grid.spacing);
+    result["junctions"] = name_of(kJunctions, grid.junctions);
+    result["parity"] = name_of(kParities, grid.parity);
+    result["planar"] = name_of(kPlanarities, grid.planar);
+    result["even_cells"] = grid.even_cells;
+    result["half_sag_offset"] = grid.half_sag_offset;
+    return result;
+}
+
+json foliation_to_json(const fab::FoliationParams& foliation) {
+    json result = {{"mode", name_of(kModes, foliation.mode)},
+                   {"torus_rings", name_of(kTorusRings, foliation.torus_rings)}};
+    if (foliation.corners) {
+        result["corners"] = *foliation.corners;
+    }
+    return result;
+}
+
+}  // namespace
+
+json params_to_json(const fab::JobParams& params) {
+    json result;
+    if (params.scale.longest_side_mm) {
+        result["scale"]["longest_side_mm"] = *params.scale.longest_side_mm;
+    } else {
+        result["scale"]["units"] = "mm";
+    }
+    result["foliation"] = foliation_to_json(params.foliation);
+    result["grid"] = grid_to_json(params.grid);
+    if (params.weave.pattern == fab::WeavePattern::Matrix) {
+        result["weave"]["pattern"] = params.weave.matrix;
+    } else {
+        result["weave"]["pattern"] = name_of(kPatterns, params.weave.pattern);
+    }
+    result["fit"] = {{"columns", name_of(kColumnRuns, params.fit.columns)},
+                     {"clearance_mm", params.fit.clearance_mm},
+                     {"crimp", params.fit.crimp},
+                     {"tab_mm", params.fit.tab_mm},
+                     {"max_piece_mm", params.fit.max_piece_mm},
+                     {"labels", params.fit.labels},
+                     {"cell_marks", name_of(kCellMarks, params.fit.cell_marks)}};
+    result["material"] = {{"warp", params.material.warp}, {"weft", params.material.weft}};
+    result["nesting"] = {{"time_s", params.nesting.time_s},
+                         {"spacing_mm", params.nesting.spacing_mm},
+                         {"margin_mm", params.nesting.margin_mm},
+                         {"rotation", name_of(kRotations, params.nesting.rotation)},
+                         {"seed", params.nesting.seed}};
+    result["output"] = {{"dialect", name_of(kDialects, params.output.dialect)},
+                        {"device", params.output.device}};
+    return result;
+}
+
+}  // namespace leafcutter::server
