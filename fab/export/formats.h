@@ -9,8 +9,9 @@
 
 namespace leafcutter::fab {
 
-// Absolute mm (G21 G90), laser on only in G1, M4 dynamic power, every G0 dark, ends M5 S0 and a park
-// move to the origin. Lines of at most 80 characters, at most 3 decimals, no comment inside motion.
+// Absolute mm (G21 G90), laser on only in G1, M4 dynamic power, every G0 dark, ends M5 S0 and a
+// park move to the origin. Lines of at most 80 characters, at most 3 decimals, no comment inside
+// motion.
 std::string write_gcode(const CutProgram& program, const MachineProfile& machine, Dialect dialect);
 
 // True size in mm, one group per operation (engrave, score, cut).

@@ -1,7 +1,7 @@
 // Places pieces on as many sheets as needed, without overlap.
 //
-// Equal pieces, options and seed give equal output. The caller bounds time through `context.stop` or
-// `max_evaluations`; a clock never enters.
+// Equal pieces, options and seed give equal output. The caller bounds time through `context.stop`
+// or `max_evaluations`; a clock never enters.
 
 #pragma once
 
@@ -24,7 +24,7 @@ struct NestOptions {
     std::int64_t max_evaluations = 2'000'000;
 };
 
-// Nests `pieces` on sheets of `size`; sheet ids count from `first_sheet_id`. Every layout returned is
+// Nests `pieces` on sheets of `size`; sheet ids count from 1. Every layout returned is
 // proven: no two outlines closer than spacing + kerf, none outside the margin.
 //
 // Throws Error(BadOption) for a sheet smaller than its margins.

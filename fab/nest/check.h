@@ -1,0 +1,24 @@
+// Proves a layout from its outlines alone, independent of how it was made.
+
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fab/layout.h"
+#include "fab/nest/nest.h"
+
+namespace leafcutter::fab {
+
+// The smallest distance between two outlines of a sheet, over all sheets; 0 if no sheet holds two.
+//
+// Throws Error(SelfCheck) if a piece is missing or placed twice, leaves its sheet's margin, lies at
+// a rotation that is not allowed, or two are closer than spacing + kerf.
+double prove_layout(const Layout& layout,
+                    std::span<const Piece* const> pieces,
+                    const NestOptions& options);
+
+// The rotations of a choice; empty means any.
+std::vector<double> allowed_rotations(Rotation rotation);
+
+}  // namespace leafcutter::fab
