@@ -79,6 +79,7 @@ public:
         common_.nmethods = 1;
         common_.method[0].ordering = CHOLMOD_AMD;
         common_.postorder = 1;
+        common_.final_ll = 1;  // LL' stops at a pivot <= 0, LDL' would go on.
         cholmod_sparse view = view_of(lower);
         factor_ = cholmod_analyze(&view, &common_);
         const bool factored = factor_ != nullptr &&
