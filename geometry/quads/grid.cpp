@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "geometry/quads/spacing.h"
+
 namespace leafcutter::geometry {
 
 namespace {
@@ -113,6 +115,7 @@ double slant_of(const Cylinder& chart, int cols, int shift) {
     return (chart.shear - shift * chart.width / cols) / chart.height;
 }
 
+// Where columns are shifted into one another, only even ones fit.
 std::vector<double> even_levels(double length, int count) {
     std::vector<double> levels;
     levels.reserve(static_cast<std::size_t>(count) + 1);
@@ -123,8 +126,11 @@ std::vector<double> even_levels(double length, int count) {
     return levels;
 }
 
-Candidate best_candidate(const Cylinder& chart, const GridWish& wish, const Least& least) {
-    const double aspect = chart.height / chart.width;
+// `aspect`: mean height over mean width of the chart on the surface.
+Candidate best_candidate(const Cylinder& chart,
+                         double aspect,
+                         const GridWish& wish,
+                         const Least& least) {
     double cells = wish.cells;
     if (wish.counts.rows && wish.counts.cols) {
         cells = static_cast<double>(*wish.counts.rows) * *wish.counts.cols;
@@ -169,7 +175,11 @@ double shear_deg(const Cylinder& chart, const Candidate& chosen) {
 CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
     const Least least = least_counts(chart.shape, wish.parity);
     check_fixed(wish.counts, least, wish.path);
-    const Candidate chosen = best_candidate(chart, wish, least);
+    const LevelScale f_scale(chart, Axis::F, 0.0);
+    const double own_slant = chart.shape == ChartShape::Torus ? chart.shear / chart.height : 0.0;
+    const LevelScale g_scale(chart, Axis::G, own_slant);
+    const Candidate chosen =
+        best_candidate(chart, f_scale.total_mm() / g_scale.total_mm(), wish, least);
     if (chosen.rows == 0) {
         throw Error(ErrorKind::BadOption, "odd-rows",
                     fmt::format("{}.rows: {} closes the rings of this torus with a fault in the "
@@ -182,8 +192,9 @@ CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
             .cols = chosen.cols,
             .column_shift = chosen.shift,
             .shear_deg = shear_deg(chart, chosen),
-            .f_levels = even_levels(chart.height, chosen.rows),
-            .g_levels = even_levels(chart.width, chosen.cols)};
+            .f_levels = f_scale.levels(chosen.rows),
+            .g_levels = chosen.shift == 0 ? g_scale.levels(chosen.cols)
+                                          : even_levels(chart.width, chosen.cols)};
 }
 
 ChartGrid::ChartGrid(const Cylinder& chart, CylinderGrid grid)

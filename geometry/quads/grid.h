@@ -25,8 +25,9 @@ struct GridWish {
     std::string path = "grid";  // Of `counts` in the job's parameters, for messages.
 };
 
-// Squares in (g, f), as many as wished, as little slanted as possible.
-// Throws Error(BadOption) naming the count that is impossible and the least that would do.
+// Squares on the surface, on average: as many as wished, evenly wide (spacing.h) and as little
+// slanted as possible. Throws Error(BadOption) naming the count that is impossible and the least
+// that would do.
 CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish);
 
 // Index arithmetic and coordinates of a chart's grid.

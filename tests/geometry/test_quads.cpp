@@ -72,6 +72,47 @@ TEST(QuadMesh, TakesSquareCellsOfTheWishedWidth) {
     EXPECT_EQ(mesh.grids[0].cols, 21);
 }
 
+// A flat square whose chart squeezes its right half by the factor 4 in g: f is not conformal to it,
+// but only the levels matter here.
+Foliation squeezed_square() {
+    const auto place = [](double u) { return u < 0.8 ? 0.625 * u : 0.5 + 2.5 * (u - 0.8); };
+    return testing::one_cylinder(testing::make_chart({.shape = ChartShape::Rectangle,
+                                                      .across = 40,
+                                                      .along = 4,
+                                                      .width = 100.0,
+                                                      .height = 100.0,
+                                                      .position = [=](double u, double v) {
+                                                          return Vector3d(100.0 * place(u),
+                                                                          100.0 * v, 0.0);
+                                                      }}));
+}
+
+TEST(QuadMesh, GradesLevelsTowardsWhereTheChartIsSqueezed) {
+    const QuadMesh mesh = build_quad_mesh(squeezed_square(), counts(4, 10));
+    std::vector<double> widths;
+    for (std::size_t col = 0; col < 10; ++col) {
+        widths.push_back((corner(mesh, col, 1) - corner(mesh, col, 0)).norm());
+    }
+    // Even levels would give 6.25 mm and 25 mm. The scale goes with the square root of the squeeze
+    // in one direction, so half of the difference (in logarithms) is left.
+    EXPECT_NEAR(widths.back() / widths.front(), 2.0, 0.05);
+    EXPECT_NEAR(sum(widths), 100.0, 1e-9);
+}
+
+TEST(QuadMesh, MakesCellsEvenWhereOneCoordinateCanDoIt) {
+    const QuadMesh torus =
+        build_quad_mesh(testing::round_torus(100.0, 25.0, 96, 256), counts(64, 16));
+    double largest = 0.0;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < torus.quads.size(); ++i) {
+        const double tube = (corner(torus, i, 1) - corner(torus, i, 0)).norm();
+        largest = std::max(largest, tube);
+        smallest = std::min(smallest, tube);
+    }
+    // All strips around the big circle are equally wide although the scale goes from 75 to 125.
+    EXPECT_LT(largest, 1.03 * smallest);
+}
+
 TEST(QuadMesh, GivesSquareCellsWhereOneCountIsFixed) {
     GridOptions options;
     options.all.rows = 12;
