@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     app.add_flag("--json", common.json, "Errors and progress as JSON lines");
     app.fallthrough();
     add_inspect_command(app, common);
+    add_sample_command(app, common);
 
     try {
         app.parse(argc, argv);
