@@ -1,0 +1,94 @@
+// The calls of the REST interface. Every function rejects with a Problem, and with nothing else.
+
+import { PayloadError, type Reader } from '../lib/check.ts';
+import { listUnder, readArtifact, readCut, readDevice, readJob, readMaterial } from './payloads.ts';
+import { Problem, problemFrom, unreachable } from './problem.ts';
+import type { Artifact, Cut, Device, Job, Material } from './types.ts';
+
+export const kApi = '/api/v1';
+
+// Marks a call as made by our own page: a form on someone else's page cannot send this header.
+export const kOwnPage = { 'X-Leafcutter': 'dashboard' } as const;
+
+async function answer(path: string, init: RequestInit): Promise<Response> {
+  let response: Response;
+  try {
+    response = await fetch(kApi + path, init);
+  } catch {
+    throw unreachable();
+  }
+  if (!response.ok) throw problemFrom(response.status, await response.text().catch(() => ''));
+  return response;
+}
+
+async function read<T>(path: string, reader: Reader<T>): Promise<T> {
+  const response = await answer(path, { headers: { Accept: 'application/json' } });
+  try {
+    return reader(await response.json(), '');
+  } catch (fault) {
+    const detail = fault instanceof PayloadError ? fault.message : 'not JSON';
+    throw new Problem(response.status, 'bad-payload', `${path}: ${detail}`);
+  }
+}
+
+async function send(method: string, path: string, body?: unknown): Promise<Response> {
+  const headers: Record<string, string> = { ...kOwnPage };
+  if (body === undefined) return answer(path, { method, headers });
+  headers['Content-Type'] = 'application/json';
+  return answer(path, { method, headers, body: JSON.stringify(body), keepalive: true });
+}
+
+export const listJobs = (): Promise<readonly Job[]> => read('/jobs?limit=200', listUnder('jobs', readJob));
+export const getJob = (id: string): Promise<Job> => read(`/jobs/${id}`, readJob);
+export const listCuts = (): Promise<readonly Cut[]> => read('/cuts', listUnder('cuts', readCut));
+export const listDevices = (): Promise<readonly Device[]> =>
+  read('/devices', listUnder('devices', readDevice));
+export const listMaterials = (): Promise<readonly Material[]> =>
+  read('/materials', listUnder('materials', readMaterial));
+export const listArtifacts = (job: string): Promise<readonly Artifact[]> =>
+  read(`/jobs/${job}/artifacts`, listUnder('artifacts', readArtifact));
+
+export async function removeJob(id: string): Promise<void> {
+  await send('DELETE', `/jobs/${id}`);
+}
+
+export async function queueCut(job: string, device: string, sheets: readonly number[]): Promise<void> {
+  await send('POST', `/jobs/${job}/cuts`, { device, sheets });
+}
+
+export type CutAction = 'start' | 'confirm-sheet' | 'pause' | 'resume' | 'abort';
+
+// Start and confirm-sheet name the exact program and say that the bed is clear.
+export async function commandCut(cut: Cut, action: CutAction): Promise<void> {
+  const fires = action === 'start' || action === 'confirm-sheet';
+  const body = fires ? { program_sha256: cut.programSha256, bed_clear: true } : {};
+  await send('POST', `/cuts/${cut.id}/${action}`, body);
+}
+
+export interface Jog {
+  readonly dxMm: number;
+  readonly dyMm: number;
+  readonly feedMmPerMin: number;
+}
+
+export async function commandDevice(id: string, command: string): Promise<void> {
+  await send('POST', `/devices/${id}/commands`, { command });
+}
+
+export async function jogDevice(id: string, jog: Jog): Promise<void> {
+  const body = { command: 'jog', dx_mm: jog.dxMm, dy_mm: jog.dyMm, feed_mm_per_min: jog.feedMmPerMin };
+  await send('POST', `/devices/${id}/commands`, body);
+}
+
+export function artifactUrl(job: string, path: string): string {
+  return `${kApi}/jobs/${job}/artifacts/${path.split('/').map(encodeURIComponent).join('/')}`;
+}
+
+export function packageUrl(job: string): string {
+  return `${kApi}/jobs/${job}/package.zip`;
+}
+
+export async function artifactText(job: string, path: string): Promise<string> {
+  const url = artifactUrl(job, path).slice(kApi.length);
+  return (await answer(url, {})).text();
+}

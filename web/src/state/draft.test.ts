@@ -1,0 +1,52 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { draftFault, draftParams, kNewDraft, kRepeats, reduceDraft } from './draft.ts';
+
+const file = (name: string): File => ({ name, size: 1 }) as File;
+
+test('a dropped file is named after itself and can be renamed', () => {
+  const two = reduceDraft(kNewDraft, { type: 'add', files: [file('kitten.obj'), file('torus.off')] });
+  assert.deepEqual(two.files.map((entry) => entry.name), ['kitten', 'torus']);
+  const renamed = reduceDraft(two, { type: 'rename', key: two.files[1]?.key ?? 0, name: 'Ring' });
+  assert.deepEqual(renamed.files.map((entry) => entry.name), ['kitten', 'Ring']);
+});
+
+test('keys stay unique when files come and go', () => {
+  const one = reduceDraft(kNewDraft, { type: 'add', files: [file('a.obj'), file('b.obj')] });
+  const two = reduceDraft(reduceDraft(one, { type: 'drop', key: 1 }), { type: 'add', files: [file('c.obj')] });
+  assert.equal(new Set(two.files.map((entry) => entry.key)).size, two.files.length);
+});
+
+test('clearing forgets the files and keeps the settings', () => {
+  const set = reduceDraft(kNewDraft, { type: 'set', values: { stripWidthMm: '6' } });
+  const cleared = reduceDraft(reduceDraft(set, { type: 'add', files: [file('a.obj')] }), { type: 'clear' });
+  assert.deepEqual(cleared, set);
+});
+
+test('sizes must be positive numbers, and a strip narrower than a third of the shape', () => {
+  const fault = (longestSideMm: string, stripWidthMm: string): string | null =>
+    draftFault({ ...kNewDraft, longestSideMm, stripWidthMm });
+  assert.equal(fault('300', '10'), null);
+  assert.equal(fault('300', '7,5'), null);
+  assert.equal(fault('', '10'), 'longest-side');
+  assert.equal(fault('300', '-1'), 'strip-width');
+  assert.equal(fault('30', '12'), 'strip-too-wide');
+});
+
+test('materials are only named when chosen', () => {
+  assert.deepEqual(draftParams(kNewDraft), {
+    scale: { longest_side_mm: 300 },
+    grid: { strip_width_mm: 10 },
+    weave: { pattern: 'plain' },
+  });
+  assert.deepEqual(draftParams({ ...kNewDraft, warp: 'felt' })['material'], { warp: 'felt' });
+});
+
+test('every repeat is a full matrix in which both families come to the top', () => {
+  for (const [pattern, rows] of Object.entries(kRepeats)) {
+    const cells = rows.flat();
+    assert.ok(rows.every((row) => row.length === rows[0]?.length), pattern);
+    assert.ok(cells.includes(0) && cells.includes(1), pattern);
+  }
+});

@@ -1,0 +1,97 @@
+// The job that is about to be made: files dropped on the page, and how they are to be woven.
+
+import { stem } from '../lib/format.ts';
+
+export const kPatterns = ['plain', 'twill-2x2', 'double-warp', 'double-weft', 'satin-5', 'basket-2x2'] as const;
+export type Pattern = (typeof kPatterns)[number];
+
+export interface DraftFile {
+  readonly key: number;
+  readonly file: File;
+  readonly name: string;
+}
+
+export interface Draft {
+  readonly files: readonly DraftFile[];
+  readonly longestSideMm: string; // As typed.
+  readonly stripWidthMm: string;
+  readonly pattern: Pattern;
+  readonly weft: string; // Material ids; empty: the daemon's choice.
+  readonly warp: string;
+}
+
+export const kNewDraft: Draft = {
+  files: [],
+  longestSideMm: '300',
+  stripWidthMm: '10',
+  pattern: 'plain',
+  weft: '',
+  warp: '',
+};
+
+export type DraftAction =
+  | { readonly type: 'add'; readonly files: readonly File[] }
+  | { readonly type: 'drop'; readonly key: number }
+  | { readonly type: 'rename'; readonly key: number; readonly name: string }
+  | { readonly type: 'set'; readonly values: Partial<Omit<Draft, 'files'>> }
+  | { readonly type: 'clear' };
+
+export function reduceDraft(draft: Draft, action: DraftAction): Draft {
+  switch (action.type) {
+    case 'add': {
+      const next = Math.max(0, ...draft.files.map((entry) => entry.key)) + 1;
+      const added = action.files.map((file, index) => ({ key: next + index, file, name: stem(file.name) }));
+      return { ...draft, files: [...draft.files, ...added] };
+    }
+    case 'drop':
+      return { ...draft, files: draft.files.filter((entry) => entry.key !== action.key) };
+    case 'rename':
+      return {
+        ...draft,
+        files: draft.files.map((entry) => (entry.key === action.key ? { ...entry, name: action.name } : entry)),
+      };
+    case 'set':
+      return { ...draft, ...action.values };
+    case 'clear':
+      return { ...draft, files: [] };
+  }
+}
+
+export type DraftFault = 'longest-side' | 'strip-width' | 'strip-too-wide';
+
+function positive(typed: string): number | null {
+  const value = Number(typed.trim().replace(',', '.'));
+  return typed.trim() !== '' && Number.isFinite(value) && value > 0 ? value : null;
+}
+
+export function draftFault(draft: Draft): DraftFault | null {
+  const longest = positive(draft.longestSideMm);
+  const strip = positive(draft.stripWidthMm);
+  if (longest === null) return 'longest-side';
+  if (strip === null) return 'strip-width';
+  return strip > longest / 3 ? 'strip-too-wide' : null;
+}
+
+// The job parameters that `draft` stands for. Only for a draft without fault.
+export function draftParams(draft: Draft): Readonly<Record<string, unknown>> {
+  const material = {
+    ...(draft.weft === '' ? {} : { weft: draft.weft }),
+    ...(draft.warp === '' ? {} : { warp: draft.warp }),
+  };
+  return {
+    scale: { longest_side_mm: positive(draft.longestSideMm) },
+    grid: { strip_width_mm: positive(draft.stripWidthMm) },
+    weave: { pattern: draft.pattern },
+    ...(Object.keys(material).length === 0 ? {} : { material }),
+  };
+}
+
+// One repeat of each pattern, rows of weft by columns of warp: 1 where warp lies on top.
+export const kRepeats: Readonly<Record<Pattern, readonly (readonly number[])[]>> = {
+  plain: [[0, 1], [1, 0]],
+  'twill-2x2': [[1, 1, 0, 0], [0, 1, 1, 0], [0, 0, 1, 1], [1, 0, 0, 1]],
+  'double-warp': [[1, 1, 0, 0], [0, 0, 1, 1]],
+  'double-weft': [[1, 0], [1, 0], [0, 1], [0, 1]],
+  'satin-5': [[1, 0, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 0, 1], [0, 1, 0, 0, 0], [0, 0, 0, 1, 0]],
+  'basket-2x2': [[1, 1, 0, 0], [1, 1, 0, 0], [0, 0, 1, 1], [0, 0, 1, 1]],
+};

@@ -1,0 +1,65 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import type { Cut, Job } from '../api/types.ts';
+import { currentCut, kEmptyFeed, newestFirst, reduceFeed } from './feed.ts';
+
+function job(id: string, over: Partial<Job> = {}): Job {
+  return {
+    id,
+    name: id,
+    state: 'queued',
+    createdAt: `2026-01-01T00:00:0${id.length}Z`,
+    version: 1,
+    file: { name: 'a.obj', bytes: 1 },
+    progress: { stage: '', fraction: 0 },
+    error: null,
+    summary: null,
+    sheets: [],
+    cuts: [],
+    actions: [],
+    ...over,
+  };
+}
+
+function cut(id: string, state: Cut['state'], createdAt: string): Cut {
+  const progress = { linesTotal: 0, linesSent: 0, linesAcknowledged: 0, fraction: 0 };
+  return {
+    id, state, createdAt, progress, job: 'a', device: 'sim', sheets: [1], sheet: 1, programSha256: '', reason: '', actions: [],
+  };
+}
+
+test('a snapshot replaces all that was known', () => {
+  const before = reduceFeed(kEmptyFeed, { type: 'job', seq: 1, job: job('a') });
+  const after = reduceFeed(before, { type: 'snapshot', seq: 2, jobs: [job('b')], cuts: [], devices: [] });
+  assert.deepEqual([...after.jobs.keys()], ['b']);
+  assert.equal(after.known, true);
+});
+
+test('an older version of a job never replaces a newer one', () => {
+  const ready = reduceFeed(kEmptyFeed, { type: 'job', seq: 5, job: job('a', { version: 5, state: 'ready' }) });
+  const late = reduceFeed(ready, { type: 'job', seq: 4, job: job('a', { version: 4, state: 'computing' }) });
+  assert.equal(late.jobs.get('a')?.state, 'ready');
+});
+
+test('reducing leaves the feed it was given as it was', () => {
+  reduceFeed(kEmptyFeed, { type: 'job', seq: 1, job: job('a') });
+  assert.equal(kEmptyFeed.jobs.size, 0);
+});
+
+test('a removed job is gone', () => {
+  const before = reduceFeed(kEmptyFeed, { type: 'job', seq: 1, job: job('a') });
+  assert.equal(reduceFeed(before, { type: 'job-removed', seq: 2, id: 'a' }).jobs.size, 0);
+});
+
+test('jobs are listed newest first', () => {
+  const jobs = new Map([job('a'), job('bbb'), job('cc')].map((one) => [one.id, one]));
+  assert.deepEqual(newestFirst(jobs).map((one) => one.id), ['bbb', 'cc', 'a']);
+});
+
+test('a running cut matters more than a later one that ended', () => {
+  let feed = reduceFeed(kEmptyFeed, { type: 'cut', seq: 1, cut: cut('c1', 'cutting', '2026-01-01T00:00:01Z') });
+  feed = reduceFeed(feed, { type: 'cut', seq: 2, cut: cut('c2', 'aborted', '2026-01-01T00:00:02Z') });
+  assert.equal(currentCut(feed, 'a')?.id, 'c1');
+  assert.equal(currentCut(feed, 'other'), null);
+});

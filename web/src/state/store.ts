@@ -1,0 +1,120 @@
+// The page's live state as signals, and the few commands that change it. Everything shown is computed
+// from here.
+
+import { computed, signal } from '@preact/signals';
+
+import { Problem } from '../api/problem.ts';
+import { type EventStream, openEventStream } from '../api/event_stream.ts';
+import type { Device, FeedEvent } from '../api/types.ts';
+import { t } from '../messages/messages.ts';
+import { type Connection, type ConnectionSignal, nextConnection, retryDelayMs } from './connection.ts';
+import { type Draft, type DraftAction, kNewDraft, reduceDraft } from './draft.ts';
+import { isConnected, kEmptyFeed, reduceFeed } from './feed.ts';
+import { formatRoute, parseRoute, type Route } from './route.ts';
+
+export const feed = signal(kEmptyFeed);
+export const connection = signal<Connection>('idle');
+export const route = signal<Route>({ page: 'jobs' });
+export const draft = signal<Draft>(kNewDraft);
+export const connectedDevices = computed<readonly Device[]>(() => [...feed.value.devices.values()].filter(isConnected));
+
+export interface Notice {
+  readonly key: number;
+  readonly kind: 'problem' | 'said';
+  readonly text: string;
+}
+
+export const notices = signal<readonly Notice[]>([]);
+let nextNotice = 1;
+
+export function say(kind: Notice['kind'], text: string): void {
+  const notice = { key: nextNotice++, kind, text };
+  notices.value = [...notices.value.filter((other) => other.text !== text).slice(-2), notice];
+  if (kind === 'said') setTimeout(() => dismiss(notice.key), 6000);
+}
+
+export function dismiss(key: number): void {
+  notices.value = notices.value.filter((notice) => notice.key !== key);
+}
+
+export function problemText(fault: unknown): string {
+  if (!(fault instanceof Problem)) return String(fault);
+  return fault.status === 0 ? t.problem.unreachable : fault.message;
+}
+
+// Runs a call and shows its problem, if it has one. True if it went well.
+export async function attempt(call: () => Promise<unknown>): Promise<boolean> {
+  try {
+    await call();
+    return true;
+  } catch (fault) {
+    say('problem', problemText(fault));
+    return false;
+  }
+}
+
+export function receive(event: FeedEvent): void {
+  feed.value = reduceFeed(feed.value, event);
+}
+
+export function changeDraft(action: DraftAction): void {
+  draft.value = reduceDraft(draft.value, action);
+}
+
+export function go(to: Route): void {
+  location.hash = formatRoute(to);
+}
+
+export function followAddress(): void {
+  const read = (): void => {
+    route.value = parseRoute(location.hash);
+  };
+  addEventListener('hashchange', read);
+  read();
+}
+
+// A page out of sight gives its connection back after this long: browsers allow only six to one host.
+const kRestAfterMs = 60_000;
+
+// Keeps the event feed open for as long as the page lives.
+export function followEvents(): void {
+  let stream: EventStream | null = null;
+  let lastId = '';
+  let attempts = 0;
+  let rest: ReturnType<typeof setTimeout> | undefined;
+
+  function open(): void {
+    stream = openEventStream(lastId, {
+      opened: () => {
+        attempts = 0;
+        move('opened');
+      },
+      event: receive,
+      lost: () => move('lost'),
+    });
+  }
+
+  function close(): void {
+    lastId = stream?.lastEventId() ?? lastId;
+    stream?.close();
+    stream = null;
+  }
+
+  function move(signal: ConnectionSignal): void {
+    const before = connection.value;
+    const after = nextConnection(before, signal);
+    if (before === after) return;
+    connection.value = after;
+    if (after === 'connecting') open();
+    if (after === 'waiting' || after === 'resting') close();
+    if (after === 'waiting') setTimeout(() => move('retry'), retryDelayMs((attempts += 1)));
+  }
+
+  document.addEventListener('visibilitychange', () => {
+    clearTimeout(rest);
+    if (document.visibilityState === 'visible') move('show');
+    else rest = setTimeout(() => move('hide'), kRestAfterMs);
+  });
+  addEventListener('online', () => move('show'));
+  move('start');
+}

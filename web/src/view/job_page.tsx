@@ -1,0 +1,163 @@
+// One job: how its computation goes, what came of it, and cutting it.
+
+import { useEffect } from 'preact/hooks';
+
+import { getJob, packageUrl, removeJob } from '../api/client.ts';
+import type { Job } from '../api/types.ts';
+import { bytes, count, duration } from '../lib/format.ts';
+import { t } from '../messages/messages.ts';
+import { currentCut } from '../state/feed.ts';
+import { jobPackage, loadPackage } from '../state/package_store.ts';
+import { attempt, feed, go, receive } from '../state/store.ts';
+import { AskButton, Chip } from './controls.tsx';
+import { CutPanel } from './cut_panel.tsx';
+import { FilesPanel } from './files_panel.tsx';
+import { Icon } from './icons.tsx';
+import { ModelPanel } from './model/model_panel.tsx';
+import { ReportPanel } from './report_panel.tsx';
+import { SheetPanel } from './sheet_panel.tsx';
+import { StageRow } from './stage_row.tsx';
+
+async function remove(job: Job): Promise<void> {
+  if (!(await attempt(() => removeJob(job.id)))) return;
+  receive({ type: 'job-removed', seq: null, id: job.id });
+  go({ page: 'jobs' });
+}
+
+function JobActions(props: { readonly job: Job }) {
+  const { job } = props;
+  const finished = job.state === 'ready' || job.state === 'done';
+  return (
+    <div class="buttons">
+      {finished && (
+        <a class="button" href={packageUrl(job.id)} download>
+          <Icon name="download" />
+          {t.files.package}
+        </a>
+      )}
+      {job.actions.includes('cancel') && (
+        <button type="button" class="button" onClick={() => void attempt(() => removeJob(job.id))}>
+          {t.job.cancel}
+        </button>
+      )}
+      {job.actions.includes('remove') && (
+        <AskButton class="button" label={t.job.remove} question={t.job.reallyRemove} onConfirm={() => void remove(job)} />
+      )}
+    </div>
+  );
+}
+
+function Summary(props: { readonly job: Job }) {
+  const { summary } = props.job;
+  if (summary === null) return null;
+  const words = t.job.facts;
+  const facts: readonly (readonly [string, string])[] = [
+    [count(summary.quads), words.quads],
+    [count(summary.strips), words.strips],
+    [count(summary.pieces), words.pieces],
+    [count(summary.sheets), words.sheets],
+    [duration(summary.estimatedS), words.time],
+  ];
+  return (
+    <ul class="summary">
+      {facts.map(([value, name]) => (
+        <li key={name}>
+          <strong>{value}</strong> {name}
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+function Warnings(props: { readonly job: Job }) {
+  const warnings = props.job.summary?.warnings ?? [];
+  if (warnings.length === 0) return null;
+  return (
+    <details class="warnings">
+      <summary>
+        <Icon name="warn" />
+        {t.job.warnings} <span class="quiet">{warnings.length}</span>
+      </summary>
+      <ul>
+        {warnings.map((warning) => (
+          <li key={warning}>{warning}</li>
+        ))}
+      </ul>
+    </details>
+  );
+}
+
+function Failure(props: { readonly job: Job }) {
+  const { error } = props.job;
+  if (error === null) return null;
+  return (
+    <div class="failure" role="alert">
+      <h2>{t.job.failed}</h2>
+      <p>{error.detail}</p>
+      <p class="quiet">
+        {error.kind} {error.code}
+      </p>
+    </div>
+  );
+}
+
+function Result(props: { readonly job: Job }) {
+  const { job } = props;
+  useEffect(() => void loadPackage(job.id), [job.id]);
+  const cut = currentCut(feed.value, job.id);
+  const now = jobPackage.value;
+  const content = now.state === 'ready' && now.job === job.id ? now.content : null;
+  return (
+    <>
+      <CutPanel job={job} cut={cut} />
+      {now.state === 'failed' && (
+        <p class="failure" role="alert">
+          {now.fault}
+        </p>
+      )}
+      {now.state === 'loading' && <p class="quiet empty">{t.files.loading}</p>}
+      {content !== null && (
+        <div class="result">
+          <ModelPanel name={job.name} content={content} />
+          <SheetPanel job={job} content={content} cut={cut} />
+          <ReportPanel figures={content.figures} />
+          <FilesPanel job={job.id} artifacts={content.artifacts} />
+        </div>
+      )}
+    </>
+  );
+}
+
+export function JobPage(props: { readonly id: string }) {
+  const { id } = props;
+  const job = feed.value.jobs.get(id);
+  const known = feed.value.known;
+  useEffect(() => {
+    if (job !== undefined || !known) return;
+    void attempt(async () => receive({ type: 'job', seq: null, job: await getJob(id) }));
+  }, [id, job === undefined, known]);
+  if (job === undefined) return <p class="page quiet empty">{known ? t.job.missing : t.jobs.loading}</p>;
+  const finished = job.state === 'ready' || job.state === 'done';
+  return (
+    <div class="page job-page">
+      <a class="back" href="#/">
+        <Icon name="left" />
+        {t.job.back}
+      </a>
+      <header class="job-head">
+        <div class="job-title">
+          <h1>{job.name}</h1>
+          <Chip kind={job.state}>{t.jobState[job.state]}</Chip>
+          <span class="quiet">
+            {job.file.name} · {bytes(job.file.bytes)}
+          </span>
+        </div>
+        <JobActions job={job} />
+      </header>
+      <Failure job={job} />
+      {finished ? <Summary job={job} /> : <StageRow job={job} />}
+      <Warnings job={job} />
+      {finished && <Result job={job} />}
+    </div>
+  );
+}

@@ -1,0 +1,125 @@
+// The machines, each as a card with its live state and what may be done with it now.
+
+import { commandDevice } from '../api/client.ts';
+import type { Device } from '../api/types.ts';
+import { figure, millimetres } from '../lib/format.ts';
+import { t } from '../messages/messages.ts';
+import { formatRoute } from '../state/route.ts';
+import { attempt, feed } from '../state/store.ts';
+import { Bar, Chip } from './controls.tsx';
+import { JogPad } from './jog_pad.tsx';
+
+const kCommands = ['home', 'unlock', 'frame', 'hold', 'resume', 'reset'] as const;
+
+function Position(props: { readonly device: Device }) {
+  const { workPositionMm, machinePositionMm } = props.device.status;
+  const position = workPositionMm.length >= 2 ? workPositionMm : machinePositionMm;
+  if (position.length < 2) return null;
+  return (
+    <dl class="position" aria-label={t.machines.position}>
+      {['X', 'Y'].map((axis, index) => (
+        <div key={axis}>
+          <dt>{axis}</dt>
+          <dd>{millimetres(position[index] ?? 0)}</dd>
+        </div>
+      ))}
+    </dl>
+  );
+}
+
+// The bed seen from above, with the head on it.
+function Bed(props: { readonly device: Device }) {
+  const { bedMm, status } = props.device;
+  const [width, height] = [bedMm[0] ?? 0, bedMm[1] ?? 0];
+  const [x, y] = [status.workPositionMm[0] ?? 0, status.workPositionMm[1] ?? 0];
+  if (width <= 0 || height <= 0) return null;
+  const inside = (value: number, size: number): number => Math.min(size, Math.max(0, value));
+  return (
+    <svg class="bed" viewBox={`-6 -6 ${width + 12} ${height + 12}`} aria-hidden="true">
+      <rect class="bed-plate" width={width} height={height} rx={8} />
+      <path class="bed-grid" d={`M${width / 2} 0V${height}M0 ${height / 2}H${width}`} />
+      <g class={status.powerS > 0 ? 'head hot' : 'head'} transform={`translate(${inside(x, width)} ${height - inside(y, height)})`}>
+        <path d="M-18 0h36M0 -18v36" />
+        <circle r={9} />
+      </g>
+    </svg>
+  );
+}
+
+function CurrentCut(props: { readonly device: Device }) {
+  const cut = props.device.cut === null ? undefined : feed.value.cuts.get(props.device.cut);
+  if (cut === undefined) return null;
+  const job = feed.value.jobs.get(cut.job);
+  return (
+    <div class="machine-cut">
+      <a href={formatRoute({ page: 'job', id: cut.job })}>{job?.name ?? cut.job}</a>
+      <Bar fraction={cut.progress.fraction} label={t.machines.cutting} kind="ember" />
+    </div>
+  );
+}
+
+function MachineCard(props: { readonly device: Device }) {
+  const { device } = props;
+  const { status, actions } = device;
+  const alarm = status.alarmCode === null ? '' : t.machines.alarm(status.alarmCode);
+  return (
+    <li class={`panel machine machine-${status.state}`}>
+      <header class="panel-head">
+        <h2>{device.name}</h2>
+        <Chip kind={`device-${status.state}`}>{t.machines.states[status.state] ?? status.state}</Chip>
+      </header>
+      {(alarm !== '' || status.message !== '') && (
+        <p class="machine-message" role="alert">
+          {alarm} {status.message}
+        </p>
+      )}
+      {status.state !== 'disconnected' && (
+        <div class="machine-body">
+          <div class="machine-where">
+            <Bed device={device} />
+            <Position device={device} />
+          </div>
+          {actions.includes('jog') && <JogPad device={device.id} />}
+        </div>
+      )}
+      <CurrentCut device={device} />
+      <div class="buttons">
+        {kCommands
+          .filter((command) => actions.includes(command))
+          .map((command) => (
+            <button
+              key={command}
+              type="button"
+              class="button"
+              onClick={() => void attempt(() => commandDevice(device.id, command))}
+            >
+              {t.machines.commands[command]}
+            </button>
+          ))}
+      </div>
+      <p class="quiet machine-about">
+        {[device.uri, status.firmware, device.bedMm.length >= 2 ? `${device.bedMm.map((v) => figure(v, 5)).join(' × ')} mm` : '']
+          .filter((word) => word !== '')
+          .join(' · ')}
+      </p>
+    </li>
+  );
+}
+
+export function MachinesPage() {
+  const devices = [...feed.value.devices.values()];
+  return (
+    <div class="page">
+      <h1>{t.machines.title}</h1>
+      {devices.length === 0 ? (
+        <p class="quiet empty">{feed.value.known ? t.machines.none : t.jobs.loading}</p>
+      ) : (
+        <ul class="machines">
+          {devices.map((device) => (
+            <MachineCard key={device.id} device={device} />
+          ))}
+        </ul>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,168 @@
+// The form that turns dropped meshes into jobs.
+
+import { useEffect, useId, useState } from 'preact/hooks';
+
+import { listMaterials } from '../api/client.ts';
+import type { Material } from '../api/types.ts';
+import { bytes } from '../lib/format.ts';
+import { t } from '../messages/messages.ts';
+import { type Draft, type DraftFile, draftFault, kPatterns, kRepeats } from '../state/draft.ts';
+import { attempt, changeDraft, draft } from '../state/store.ts';
+import { sendDraft } from '../state/uploads.ts';
+import { ChooseFile } from './drop.tsx';
+import { Icon } from './icons.tsx';
+import { Swatch } from './swatch.tsx';
+
+const set = (values: Partial<Omit<Draft, 'files'>>): void => changeDraft({ type: 'set', values });
+
+function FileRow(props: { readonly entry: DraftFile }) {
+  const { key, file, name } = props.entry;
+  return (
+    <li class="draft-file">
+      <label class="field">
+        <span>{t.draft.name}</span>
+        <input
+          type="text"
+          value={name}
+          maxLength={120}
+          onInput={(event) => changeDraft({ type: 'rename', key, name: event.currentTarget.value })}
+        />
+      </label>
+      <span class="quiet file-name">
+        {file.name} · {bytes(file.size)}
+      </span>
+      <button
+        type="button"
+        class="plain"
+        aria-label={t.draft.remove(file.name)}
+        onClick={() => changeDraft({ type: 'drop', key })}
+      >
+        <Icon name="close" />
+      </button>
+    </li>
+  );
+}
+
+function Measure(props: { readonly label: string; readonly value: string; readonly bad: boolean; readonly onInput: (typed: string) => void }) {
+  return (
+    <label class="field measure">
+      <span>{props.label}</span>
+      <span class="with-unit">
+        <input
+          type="text"
+          inputMode="decimal"
+          value={props.value}
+          aria-invalid={props.bad}
+          onInput={(event) => props.onInput(event.currentTarget.value)}
+        />
+        <span aria-hidden="true">mm</span>
+      </span>
+    </label>
+  );
+}
+
+function PatternPicker() {
+  const group = useId();
+  return (
+    <fieldset class="patterns">
+      <legend>{t.draft.pattern}</legend>
+      <div class="pattern-row">
+        {kPatterns.map((pattern) => (
+          <label key={pattern} class="pattern">
+            <input
+              type="radio"
+              name={group}
+              class="visually-hidden"
+              checked={draft.value.pattern === pattern}
+              onChange={() => set({ pattern })}
+            />
+            <Swatch repeat={kRepeats[pattern]} size={6} />
+            <span>{t.patterns[pattern]}</span>
+          </label>
+        ))}
+      </div>
+    </fieldset>
+  );
+}
+
+function MaterialSelect(props: {
+  readonly label: string;
+  readonly family: 'weft' | 'warp';
+  readonly materials: readonly Material[];
+}) {
+  const { family, materials } = props;
+  const chosen = materials.find((material) => material.id === draft.value[family]);
+  return (
+    <label class="field">
+      <span>{props.label}</span>
+      <span class="with-colour">
+        <span class={`colour ${chosen === undefined ? family : ''}`} style={chosen === undefined ? {} : { background: chosen.colour }} />
+        <select value={draft.value[family]} onChange={(event) => set({ [family]: event.currentTarget.value })}>
+          <option value="">{t.draft.standard}</option>
+          {materials.map((material) => (
+            <option key={material.id} value={material.id}>
+              {material.name}
+            </option>
+          ))}
+        </select>
+      </span>
+    </label>
+  );
+}
+
+export function NewJob() {
+  const [materials, setMaterials] = useState<readonly Material[]>([]);
+  useEffect(() => {
+    void attempt(async () => setMaterials(await listMaterials()));
+  }, []);
+  const now = draft.value;
+  const fault = draftFault(now);
+  return (
+    <form
+      class="panel new-job"
+      aria-label={t.draft.title}
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (fault === null) void sendDraft();
+      }}
+    >
+      <header class="panel-head">
+        <h2>{t.draft.title}</h2>
+        <ChooseFile class="button small" label={t.drop.more} />
+      </header>
+      <ul class="draft-files">
+        {now.files.map((entry) => (
+          <FileRow key={entry.key} entry={entry} />
+        ))}
+      </ul>
+      <PatternPicker />
+      <div class="measures">
+        <Measure
+          label={t.draft.size}
+          value={now.longestSideMm}
+          bad={fault === 'longest-side'}
+          onInput={(longestSideMm) => set({ longestSideMm })}
+        />
+        <Measure
+          label={t.draft.strip}
+          value={now.stripWidthMm}
+          bad={fault === 'strip-width' || fault === 'strip-too-wide'}
+          onInput={(stripWidthMm) => set({ stripWidthMm })}
+        />
+        <MaterialSelect label={t.draft.weft} family="weft" materials={materials} />
+        <MaterialSelect label={t.draft.warp} family="warp" materials={materials} />
+      </div>
+      <p class="fault" role="alert">
+        {fault === null ? '' : t.draft.faults[fault]}
+      </p>
+      <div class="buttons">
+        <button type="submit" class="button primary" disabled={fault !== null}>
+          {t.draft.submit(now.files.length)}
+        </button>
+        <button type="button" class="button" onClick={() => changeDraft({ type: 'clear' })}>
+          {t.draft.cancel}
+        </button>
+      </div>
+    </form>
+  );
+}

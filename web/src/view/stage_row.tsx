@@ -1,0 +1,27 @@
+// The computation's stages as a row of steps.
+
+import type { Job } from '../api/types.ts';
+import { t } from '../messages/messages.ts';
+import { stagesOf } from '../state/stages.ts';
+
+export function StageRow(props: { readonly job: Job }) {
+  const stages = stagesOf(props.job);
+  const running = stages.find((stage) => stage.state === 'running');
+  return (
+    <div class="stages-box">
+      <ol class="stages" aria-label={t.stagesLabel}>
+        {stages.map((stage) => (
+          <li key={stage.name} class={`stage stage-${stage.state}`} aria-current={stage.state === 'running' ? 'step' : undefined}>
+            <span class="stage-bar">
+              <span class="stage-fill" style={{ transform: `scaleX(${stage.fraction})` }} />
+            </span>
+            <span class="stage-name">{t.stages[stage.name]}</span>
+          </li>
+        ))}
+      </ol>
+      <p class="visually-hidden" aria-live="polite">
+        {running === undefined ? t.jobState[props.job.state] : t.stages[running.name]}
+      </p>
+    </div>
+  );
+}

@@ -1,0 +1,156 @@
+// Serves web/dist and the REST interface of a FakeDaemon, with the headers the real daemon sends.
+//   node test/fake_server.mjs [--port 8787] [--pace 1]
+
+import { createReadStream, existsSync } from 'node:fs';
+import { createServer } from 'node:http';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { parseArgs } from 'node:util';
+
+import { FakeDaemon, Refusal } from './fake_daemon.mjs';
+
+const dist = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../dist');
+const kTypes = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml' };
+const kMaterials = [
+  { id: 'paper-160-yellow', name: 'Paper 160 g/m², yellow', colour: '#e8c547', thickness_mm: 0.2 },
+  { id: 'paper-160-blue', name: 'Paper 160 g/m², blue', colour: '#3f6fb5', thickness_mm: 0.2 },
+  { id: 'veneer-oak', name: 'Oak veneer', colour: '#b98a56', thickness_mm: 0.6 },
+];
+
+function sendJson(response, status, value) {
+  response.writeHead(status, { 'Content-Type': 'application/json' });
+  response.end(JSON.stringify(value));
+}
+
+async function bodyOf(request) {
+  const chunks = [];
+  for await (const chunk of request) chunks.push(chunk);
+  return Buffer.concat(chunks);
+}
+
+async function jsonOf(request) {
+  const body = await bodyOf(request);
+  return body.length === 0 ? {} : JSON.parse(body.toString());
+}
+
+async function formOf(request) {
+  const body = await bodyOf(request);
+  return new Response(body, { headers: { 'Content-Type': request.headers['content-type'] } }).formData();
+}
+
+function serveFile(request, response) {
+  const { pathname } = new URL(request.url, 'http://localhost');
+  const file = path.join(dist, pathname === '/' ? 'index.html' : pathname);
+  if (!file.startsWith(dist) || !existsSync(file)) throw new Refusal(404, 'not-found', `There is no ${pathname}.`);
+  response.writeHead(200, { 'Content-Type': kTypes[path.extname(file)] ?? 'application/octet-stream' });
+  createReadStream(file).pipe(response);
+}
+
+function serveEvents(daemon, request, response) {
+  response.writeHead(200, { 'Content-Type': 'text/event-stream', 'Cache-Control': 'no-store' });
+  const write = (event) => {
+    const id = event.seq === null ? '' : `id: ${event.seq}\n`;
+    response.write(`${id}event: ${event.type}\ndata: ${JSON.stringify(event)}\n\n`);
+  };
+  response.write('retry: 2000\n\n');
+  const last = Number(request.headers['last-event-id'] ?? NaN);
+  if (last <= daemon.log.length) daemon.log.slice(last).forEach(write);
+  else write({ type: 'snapshot', ...daemon.snapshot() });
+  daemon.listeners.add(write);
+  const heartbeat = setInterval(() => response.write(': heartbeat\n\n'), 15_000);
+  response.on('close', () => {
+    clearInterval(heartbeat);
+    daemon.listeners.delete(write);
+  });
+}
+
+async function createJob(daemon, request, response) {
+  const form = await formOf(request);
+  const mesh = form.get('mesh');
+  const params = form.get('params');
+  const text = typeof params === 'string' ? params : await params.text();
+  const job = daemon.addJob({
+    name: form.get('name'), params: JSON.parse(text), file: { name: mesh.name, bytes: mesh.size, sha256: '0'.repeat(64) },
+  });
+  response.setHeader('Location', `/api/v1/jobs/${job.id}`);
+  sendJson(response, 201, job);
+}
+
+function artifactFiles(daemon, id) {
+  return daemon.packages.get(id)?.files ?? daemon.missing('package', id);
+}
+
+function listArtifacts(daemon, id) {
+  const files = [...artifactFiles(daemon, id)];
+  return { artifacts: files.map(([name, text]) => ({ path: name, bytes: text.length, sha256: '', media_type: 'text/plain' })) };
+}
+
+function sendArtifact(daemon, response, id, name) {
+  const text = artifactFiles(daemon, id).get(name) ?? daemon.missing('artifact', name);
+  response.writeHead(200, { 'Content-Type': 'text/plain', 'Content-Disposition': 'attachment' });
+  response.end(text);
+}
+
+// [method, pattern, handler(daemon, words, request, response)]
+const kRoutes = [
+  ['GET', /^\/jobs$/, (d, _, q, r) => sendJson(r, 200, { jobs: d.snapshot().jobs, next_cursor: null })],
+  ['POST', /^\/jobs$/, (d, _, q, r) => createJob(d, q, r)],
+  ['GET', /^\/jobs\/([^/]+)$/, (d, [id], q, r) => sendJson(r, 200, d.view(d.job(id)))],
+  ['DELETE', /^\/jobs\/([^/]+)$/, (d, [id], q, r) => { d.removeJob(id); r.writeHead(204).end(); }],
+  ['GET', /^\/jobs\/([^/]+)\/artifacts$/, (d, [id], q, r) => sendJson(r, 200, listArtifacts(d, id))],
+  ['GET', /^\/jobs\/([^/]+)\/artifacts\/(.+)$/, (d, [id, name], q, r) => sendArtifact(d, r, id, name)],
+  ['POST', /^\/jobs\/([^/]+)\/cuts$/, async (d, [id], q, r) => sendJson(r, 201, d.view(d.addCut(id, await jsonOf(q))))],
+  ['GET', /^\/cuts$/, (d, _, q, r) => sendJson(r, 200, { cuts: d.snapshot().cuts })],
+  ['POST', /^\/cuts\/([^/]+)\/([a-z-]+)$/, async (d, [id, action], q, r) => sendJson(r, 200, d.view(d.commandCut(id, action, await jsonOf(q))))],
+  ['GET', /^\/devices$/, (d, _, q, r) => sendJson(r, 200, { devices: d.snapshot().devices })],
+  ['POST', /^\/devices\/([^/]+)\/commands$/, async (d, [id], q, r) => { d.commandDevice(id, await jsonOf(q)); sendJson(r, 202, {}); }],
+  ['GET', /^\/materials$/, (d, _, q, r) => sendJson(r, 200, { materials: kMaterials })],
+  ['GET', /^\/events$/, (d, _, q, r) => serveEvents(d, q, r)],
+];
+
+async function handle(daemon, request, response) {
+  const { pathname } = new URL(request.url, 'http://localhost');
+  if (!pathname.startsWith('/api/v1')) return serveFile(request, response);
+  const rest = decodeURIComponent(pathname.slice('/api/v1'.length));
+  for (const [method, pattern, handler] of kRoutes) {
+    const match = pattern.exec(rest);
+    if (match && method === request.method) return handler(daemon, match.slice(1), request, response);
+  }
+  throw new Refusal(404, 'not-found', `There is no ${request.method} ${pathname}.`);
+}
+
+function sendProblem(response, fault) {
+  const status = fault instanceof Refusal ? fault.status : 500;
+  const problem = {
+    type: `https://leafcutter.dev/problems/${fault.code ?? 'internal'}`,
+    title: fault.code ?? 'Internal error', status, detail: fault.message, code: fault.code ?? 'internal', errors: fault.errors ?? [],
+  };
+  response.writeHead(status, { 'Content-Type': 'application/problem+json' });
+  response.end(JSON.stringify(problem));
+}
+
+// → { url, daemon, close() }
+export async function startFakeServer({ port = 0, pace = 1 } = {}) {
+  const daemon = new FakeDaemon({ pace });
+  const server = createServer((request, response) => {
+    response.setHeader('Content-Security-Policy', "default-src 'self'; script-src 'self'; style-src 'self'; object-src 'none'; base-uri 'none'; frame-ancestors 'none'");
+    response.setHeader('X-Content-Type-Options', 'nosniff');
+    handle(daemon, request, response).catch?.((fault) => sendProblem(response, fault));
+  });
+  await new Promise((resolve) => server.listen(port, '127.0.0.1', resolve));
+  return {
+    url: `http://127.0.0.1:${server.address().port}`,
+    daemon,
+    close() {
+      daemon.stop();
+      server.closeAllConnections();
+      server.close();
+    },
+  };
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  const { values } = parseArgs({ options: { port: { type: 'string', default: '8787' }, pace: { type: 'string', default: '1' } } });
+  const { url } = await startFakeServer({ port: Number(values.port), pace: Number(values.pace) });
+  console.log(`the dashboard with a made-up daemon: ${url}`);
+}
