@@ -129,18 +129,24 @@ function sendProblem(response, fault) {
   response.end(JSON.stringify(problem));
 }
 
-// → { url, daemon, close() }
+// → { url, daemon, dropStreams(), close() }
 export async function startFakeServer({ port = 0, pace = 1 } = {}) {
   const daemon = new FakeDaemon({ pace });
+  const streams = new Set();
   const server = createServer((request, response) => {
     response.setHeader('Content-Security-Policy', "default-src 'self'; script-src 'self'; style-src 'self'; object-src 'none'; base-uri 'none'; frame-ancestors 'none'");
     response.setHeader('X-Content-Type-Options', 'nosniff');
-    handle(daemon, request, response).catch?.((fault) => sendProblem(response, fault));
+    if (request.url.endsWith('/events')) {
+      streams.add(response);
+      response.on('close', () => streams.delete(response));
+    }
+    handle(daemon, request, response).catch((fault) => sendProblem(response, fault));
   });
   await new Promise((resolve) => server.listen(port, '127.0.0.1', resolve));
   return {
     url: `http://127.0.0.1:${server.address().port}`,
     daemon,
+    dropStreams: () => streams.forEach((stream) => stream.destroy()),
     close() {
       daemon.stop();
       server.closeAllConnections();

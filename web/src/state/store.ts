@@ -3,6 +3,7 @@
 
 import { computed, signal } from '@preact/signals';
 
+import { listCuts, listDevices, listJobs } from '../api/client.ts';
 import { Problem } from '../api/problem.ts';
 import { type EventStream, openEventStream } from '../api/event_stream.ts';
 import type { Device, FeedEvent } from '../api/types.ts';
@@ -73,6 +74,13 @@ export function followAddress(): void {
   read();
 }
 
+// While the event feed is down, the lists are asked for: a plain call may get through where a long
+// answer does not, and machines must be known for their STOP buttons to be there.
+async function askForAll(): Promise<void> {
+  const [jobs, cuts, devices] = await Promise.all([listJobs(), listCuts(), listDevices()]);
+  if (connection.value !== 'live') receive({ type: 'snapshot', seq: null, jobs, cuts, devices });
+}
+
 // A page out of sight gives its connection back after this long: browsers allow only six to one host.
 const kRestAfterMs = 60_000;
 
@@ -107,7 +115,10 @@ export function followEvents(): void {
     connection.value = after;
     if (after === 'connecting') open();
     if (after === 'waiting' || after === 'resting') close();
-    if (after === 'waiting') setTimeout(() => move('retry'), retryDelayMs((attempts += 1)));
+    if (after === 'waiting') {
+      setTimeout(() => move('retry'), retryDelayMs((attempts += 1)));
+      askForAll().catch(() => undefined);
+    }
   }
 
   document.addEventListener('visibilitychange', () => {
