@@ -16,7 +16,19 @@
 
 namespace leafcutter::drivers {
 
-enum class MachineState { Disconnected, Idle, Run, Hold, Jog, Home, Alarm, Door, Check, Sleep, Unknown };
+enum class MachineState {
+    Disconnected,
+    Idle,
+    Run,
+    Hold,
+    Jog,
+    Home,
+    Alarm,
+    Door,
+    Check,
+    Sleep,
+    Unknown
+};
 
 std::string_view to_string(MachineState state);
 
@@ -62,10 +74,11 @@ public:
     virtual DeviceStatus status() const = 0;
     virtual JobProgress progress() const = 0;
 
-    // Queues a program (G-code text). Throws Refused while one runs, in Alarm, or if preflight fails.
+    // Queues a program (G-code text). Throws Refused while one runs, in Alarm, or if preflight
+    // fails.
     virtual void start(std::string program) = 0;
 
-    virtual void hold() = 0;    // Feed hold: decelerates, beam off, can be resumed.
+    virtual void hold() = 0;  // Feed hold: decelerates, beam off, can be resumed.
     virtual void resume() = 0;
     virtual void cancel() = 0;  // Hold, wait until it stands, reset: position kept, beam off.
     virtual void stop() = 0;    // Emergency: reset at once, waits for nobody.
@@ -75,11 +88,12 @@ public:
     virtual void jog_cancel() = 0;
     virtual void console(std::string line) = 0;  // One line by hand; the reply comes to on_line.
 
-    // Every line received, for a console view. Set before the first run_once(); called by its thread.
+    // Every line received, for a console view. Set before the first run_once(); called by its
+    // thread.
     std::function<void(std::string_view line)> on_line;
 
-    // Works for at most `slice`: reads, feeds the stream, polls status. Throws LinkLost once when the
-    // link is gone; the device is Disconnected from then on.
+    // Works for at most `slice`: reads, feeds the stream, polls status. Throws LinkLost once when
+    // the link is gone; the device is Disconnected from then on.
     virtual void run_once(std::chrono::milliseconds slice) = 0;
 };
 

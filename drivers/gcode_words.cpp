@@ -1,0 +1,81 @@
+#include "drivers/gcode_words.h"
+
+#include <cstddef>
+
+namespace leafcutter::drivers {
+
+namespace {
+
+bool is_digit(char letter) {
+    return letter >= '0' && letter <= '9';
+}
+
+// A plain decimal number: Grbl knows no exponent. Advances `at` behind it.
+std::optional<double> read_number(std::string_view text, std::size_t& at) {
+    double sign = 1.0;
+    if (at < text.size() && (text[at] == '-' || text[at] == '+')) {
+        sign = text[at] == '-' ? -1.0 : 1.0;
+        ++at;
+    }
+    double value = 0.0;
+    double scale = 1.0;
+    std::size_t digits = 0;
+    bool fraction = false;
+    for (; at < text.size(); ++at) {
+        if (is_digit(text[at])) {
+            ++digits;
+            value = value * 10.0 + (text[at] - '0');
+            scale *= fraction ? 10.0 : 1.0;
+        } else if (text[at] == '.' && !fraction) {
+            fraction = true;
+        } else {
+            break;
+        }
+    }
+    if (digits == 0) {
+        return std::nullopt;
+    }
+    return sign * value / scale;
+}
+
+}  // namespace
+
+std::string strip_gcode(std::string_view line) {
+    std::string stripped;
+    bool comment = false;
+    for (const char letter : line) {
+        if (comment) {
+            comment = letter != ')';
+        } else if (letter == '(') {
+            comment = true;
+        } else if (letter == ';') {
+            break;
+        } else if (letter > ' ' && letter != '/') {
+            const bool lower = letter >= 'a' && letter <= 'z';
+            stripped += lower ? static_cast<char>(letter - 'a' + 'A') : letter;
+        }
+    }
+    return stripped;
+}
+
+GcodeWords split_words(std::string_view stripped) {
+    GcodeWords result;
+    std::size_t at = 0;
+    while (at < stripped.size()) {
+        const char letter = stripped[at];
+        if (letter < 'A' || letter > 'Z') {
+            result.fault = WordFault::LetterExpected;
+            return result;
+        }
+        ++at;
+        const std::optional<double> value = read_number(stripped, at);
+        if (!value) {
+            result.fault = WordFault::BadNumber;
+            return result;
+        }
+        result.words.push_back({letter, *value});
+    }
+    return result;
+}
+
+}  // namespace leafcutter::drivers

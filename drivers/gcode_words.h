@@ -1,0 +1,31 @@
+// Splits a line of G-code into its words, by the rules of Grbl's reader.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace leafcutter::drivers {
+
+struct GcodeWord {
+    char letter = 0;     // Upper case.
+    double value = 0.0;  // As written: no unit applied.
+};
+
+// The line without comments, blanks and control characters, in upper case. A `(` comment that is
+// not closed reaches to the end of the line; a leading `/` is dropped.
+std::string strip_gcode(std::string_view line);
+
+enum class WordFault { LetterExpected, BadNumber };
+
+struct GcodeWords {
+    std::vector<GcodeWord> words;
+    std::optional<WordFault> fault;  // Set: `words` ends before the faulty one.
+};
+
+// Takes a stripped line.
+GcodeWords split_words(std::string_view stripped);
+
+}  // namespace leafcutter::drivers

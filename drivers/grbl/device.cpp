@@ -1,0 +1,176 @@
+#include "drivers/grbl/device.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+namespace leafcutter::drivers {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+// The longest that a command from another thread, a stop above all, waits for its turn on the wire.
+constexpr milliseconds kTurn{10};
+constexpr milliseconds kAttachTime{12000};
+constexpr milliseconds kCloseTime{2500};
+
+}  // namespace
+
+GrblDevice::GrblDevice(std::string uri, std::unique_ptr<Transport> transport, Clock clock)
+    : uri_(std::move(uri)),
+      transport_(std::move(transport)),
+      clock_(std::move(clock)),
+      session_(clock_()) {}
+
+GrblDevice::~GrblDevice() {
+    try {
+        close();
+    } catch (const std::exception&) {
+        // The link is gone: there is nobody left to be told to stop.
+        gone_ = true;
+    }
+}
+
+void GrblDevice::close() {
+    const auto end = clock_() + kCloseTime;
+    const auto at_rest = [this] {
+        const std::lock_guard lock(mutex_);
+        return session_.may_close();
+    };
+    if (gone_ || at_rest()) {
+        return;
+    }
+    cancel();
+    while (!at_rest() && clock_() < end) {
+        turn(kTurn);
+    }
+    if (!at_rest()) {
+        stop();
+        write_output();
+    }
+}
+
+void GrblDevice::attach() {
+    const auto end = clock_() + kAttachTime;
+    const auto ready = [this] {
+        const std::lock_guard lock(mutex_);
+        return session_.ready() && session_.status().state != MachineState::Unknown;
+    };
+    while (!ready()) {
+        if (clock_() > end) {
+            throw LinkLost(transport_->description() + ": the controller doesn't say who it is");
+        }
+        run_once(kTurn);
+    }
+}
+
+DeviceStatus GrblDevice::status() const {
+    const std::lock_guard lock(mutex_);
+    return session_.status();
+}
+
+JobProgress GrblDevice::progress() const {
+    const std::lock_guard lock(mutex_);
+    return session_.progress();
+}
+
+void GrblDevice::start(std::string program) {
+    const std::lock_guard lock(mutex_);
+    session_.start(program);
+}
+
+void GrblDevice::hold() {
+    const std::lock_guard lock(mutex_);
+    session_.hold();
+}
+
+void GrblDevice::resume() {
+    const std::lock_guard lock(mutex_);
+    session_.resume();
+}
+
+void GrblDevice::cancel() {
+    const std::lock_guard lock(mutex_);
+    session_.cancel();
+}
+
+void GrblDevice::stop() {
+    const std::lock_guard lock(mutex_);
+    session_.stop();
+}
+
+void GrblDevice::home() {
+    const std::lock_guard lock(mutex_);
+    session_.home();
+}
+
+void GrblDevice::unlock() {
+    const std::lock_guard lock(mutex_);
+    session_.unlock();
+}
+
+void GrblDevice::jog(const Jog& jog) {
+    const std::lock_guard lock(mutex_);
+    session_.jog(jog);
+}
+
+void GrblDevice::jog_cancel() {
+    const std::lock_guard lock(mutex_);
+    session_.jog_cancel();
+}
+
+void GrblDevice::console(std::string line) {
+    const std::lock_guard lock(mutex_);
+    session_.console(line);
+}
+
+void GrblDevice::write_output() {
+    std::string output;
+    {
+        const std::lock_guard lock(mutex_);
+        output = session_.take_output();
+    }
+    if (!output.empty()) {
+        transport_->write_all(output);
+    }
+}
+
+void GrblDevice::turn(milliseconds wait) {
+    write_output();
+    const std::string bytes = transport_->read_some(wait);
+    std::vector<std::string> lines;
+    {
+        const std::lock_guard lock(mutex_);
+        session_.receive(bytes, clock_());
+        session_.tick(clock_());
+        lines = session_.take_lines();
+    }
+    write_output();
+    if (on_line) {
+        for (const std::string& line : lines) {
+            on_line(line);
+        }
+    }
+}
+
+void GrblDevice::run_once(milliseconds slice) {
+    if (gone_) {
+        std::this_thread::sleep_for(slice);
+        return;
+    }
+    const auto end = clock_() + slice;
+    try {
+        do {
+            const auto left = std::chrono::duration_cast<milliseconds>(end - clock_());
+            turn(std::clamp(left, milliseconds(0), kTurn));
+        } while (clock_() < end);
+    } catch (const LinkLost& lost) {
+        gone_ = true;
+        const std::lock_guard lock(mutex_);
+        session_.lose_link(lost.what());
+        throw;
+    }
+}
+
+}  // namespace leafcutter::drivers

@@ -1,0 +1,61 @@
+// A Grbl controller on a transport, as a Device.
+
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "drivers/device.h"
+#include "drivers/grbl/session.h"
+#include "drivers/transport.h"
+
+namespace leafcutter::drivers {
+
+class GrblDevice final : public Device {
+public:
+    using Clock = std::function<GrblSession::Time()>;
+
+    GrblDevice(std::string uri,
+               std::unique_ptr<Transport> transport,
+               Clock clock = std::chrono::steady_clock::now);
+    GrblDevice(const GrblDevice&) = delete;
+    GrblDevice& operator=(const GrblDevice&) = delete;
+
+    // A running job is stopped with the beam off, as far as the link still carries it.
+    ~GrblDevice() override;
+
+    // Works until the controller has answered who it is. Throws LinkLost if it doesn't.
+    void attach();
+
+    std::string uri() const override { return uri_; }
+    DeviceStatus status() const override;
+    JobProgress progress() const override;
+    void start(std::string program) override;
+    void hold() override;
+    void resume() override;
+    void cancel() override;
+    void stop() override;
+    void home() override;
+    void unlock() override;
+    void jog(const Jog& jog) override;
+    void jog_cancel() override;
+    void console(std::string line) override;
+    void run_once(std::chrono::milliseconds slice) override;
+
+private:
+    void turn(std::chrono::milliseconds wait);
+    void write_output();
+    void close();
+
+    std::string uri_;
+    std::unique_ptr<Transport> transport_;  // Of the owner thread alone.
+    Clock clock_;
+    mutable std::mutex mutex_;  // Guards session_; never held while waiting.
+    GrblSession session_;
+    bool gone_ = false;  // Of the owner thread alone.
+};
+
+}  // namespace leafcutter::drivers

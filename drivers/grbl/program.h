@@ -1,0 +1,53 @@
+// A G-code file made ready for Grbl: comments and blanks gone, every line checked before the beam
+// may be lit.
+
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/device.h"
+
+namespace leafcutter::drivers {
+
+// The program is at fault, not the machine.
+class ProgramRefused : public Refused {
+public:
+    using Refused::Refused;
+};
+
+struct ProgramLine {
+    std::string text;
+    std::size_t number = 0;  // In the file, from 1.
+    bool alone = false;      // Touches the EEPROM: sent with nothing else under way.
+    double dwell_s = 0.0;    // G4: the machine stands this long on purpose.
+};
+
+struct Program {
+    std::vector<ProgramLine> lines;
+};
+
+// Throws ProgramRefused, naming the line, for a line that Grbl can't take: longer than 79
+// characters, words that can't be read, `$` commands, bytes that Grbl takes for real-time commands.
+Program read_program(std::string_view text);
+
+// What a program is held against. Lengths in mm.
+struct MachineFacts {
+    bool laser_mode = false;            // $32
+    bool reports_inches = false;        // $13
+    std::optional<double> s_max;        // $30
+    std::array<double, 2> travel_mm{};  // $130, $131; 0: unknown.
+    // Where the work origin lies in the travel, 0 at its low end; unknown without homing.
+    std::optional<std::array<double, 2>> origin_in_travel_mm;
+    std::array<double, 2> work_position_mm{};
+};
+
+// Throws ProgramRefused with the line, or Refused for the machine's settings, and what to do.
+// Accepts M3 as well as M4: only $32=1 makes either safe.
+void preflight(const Program& program, const MachineFacts& machine);
+
+}  // namespace leafcutter::drivers

@@ -1,0 +1,114 @@
+#include "drivers/grbl/protocol.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <stdexcept>
+#include <utility>
+
+namespace leafcutter::drivers {
+
+namespace {
+
+constexpr std::size_t kLongestReply = 512;
+
+bool starts_with(std::string_view text, std::string_view start) {
+    return text.substr(0, start.size()) == start;
+}
+
+bool is_banner(std::string_view line) {
+    std::string lower(line.substr(0, 7));
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return starts_with(lower, "grbl ") || starts_with(lower, "grblhal");
+}
+
+int number_after(std::string_view line, std::size_t at) {
+    int code = 0;
+    std::from_chars(line.data() + at, line.data() + line.size(), code);
+    return code;
+}
+
+bool is_setting(std::string_view line) {
+    const std::size_t equals = line.find('=');
+    return line.size() > 2 && line[0] == '$' && equals != std::string_view::npos && equals > 1;
+}
+
+}  // namespace
+
+bool is_realtime_byte(char byte) {
+    const auto code = static_cast<unsigned char>(byte);
+    return code == 0x18 || code == '?' || code == '!' || code == '~' || code > 0x7F;
+}
+
+GrblProtocol::GrblProtocol(std::size_t rx_buffer_bytes) : rx_buffer_bytes_(rx_buffer_bytes) {}
+
+std::vector<GrblEvent> GrblProtocol::receive(std::string_view bytes) {
+    std::vector<GrblEvent> events;
+    for (const char byte : bytes) {
+        const bool line_end = byte == '\n' || byte == '\r';
+        if (!line_end) {
+            partial_ += byte;
+        }
+        if ((line_end && !partial_.empty()) || partial_.size() >= kLongestReply) {
+            events.push_back(classify(std::exchange(partial_, {})));
+            const GrblEvent::Kind kind = events.back().kind;
+            if (kind == GrblEvent::Kind::Ack || kind == GrblEvent::Kind::Error) {
+                count_answer();
+            }
+        }
+    }
+    return events;
+}
+
+GrblEvent GrblProtocol::classify(std::string line) const {
+    using Kind = GrblEvent::Kind;
+    GrblEvent event;
+    if (line == "ok") {
+        event.kind = Kind::Ack;
+    } else if (starts_with(line, "error:")) {
+        event = {Kind::Error, number_after(line, 6), {}};
+    } else if (starts_with(line, "ALARM:")) {
+        event = {Kind::Alarm, number_after(line, 6), {}};
+    } else if (line.front() == '<' && line.back() == '>') {
+        event.kind = Kind::Status;
+    } else if (is_banner(line)) {
+        event.kind = Kind::Banner;
+    } else if (is_setting(line)) {
+        event.kind = Kind::Setting;
+    } else if (line.front() == '[' && line.back() == ']') {
+        event.kind = Kind::Message;
+    }
+    event.text = std::move(line);
+    return event;
+}
+
+void GrblProtocol::count_answer() {
+    if (!line_sizes_.empty()) {
+        bytes_in_flight_ -= line_sizes_.front();
+        line_sizes_.pop_front();
+    }
+}
+
+std::optional<std::string> GrblProtocol::offer(std::string_view line) {
+    const std::size_t size = line.size() + 1;
+    const bool foreign = std::any_of(line.begin(), line.end(), [](char byte) {
+        return byte == '\n' || byte == '\r' || is_realtime_byte(byte);
+    });
+    if (foreign || line.size() > kMaxLine || size > rx_buffer_bytes_) {
+        throw std::invalid_argument("\"" + std::string(line) + "\": no line that Grbl can take");
+    }
+    if (bytes_in_flight_ + size > rx_buffer_bytes_) {
+        return std::nullopt;
+    }
+    bytes_in_flight_ += size;
+    line_sizes_.push_back(size);
+    return std::string(line) + '\n';
+}
+
+void GrblProtocol::forget_lines() {
+    bytes_in_flight_ = 0;
+    line_sizes_.clear();
+}
+
+}  // namespace leafcutter::drivers

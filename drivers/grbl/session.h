@@ -1,0 +1,150 @@
+// A Grbl controller as its sender sees it: pure, bytes and time in, bytes out. Opens nothing.
+//
+// Attaches (banner, $I, $$), streams a program by character counting, polls '?' at 5 Hz whatever
+// the stream does, and ends every job it can't finish with the beam off: feed hold, wait for
+// Hold:0, reset.
+
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/device.h"
+#include "drivers/grbl/program.h"
+#include "drivers/grbl/protocol.h"
+#include "drivers/grbl/status_report.h"
+
+namespace leafcutter::drivers {
+
+class GrblSession {
+public:
+    using Time = std::chrono::steady_clock::time_point;
+
+    explicit GrblSession(Time now);
+
+    void receive(std::string_view bytes, Time now);
+
+    // Lets what is due happen. Throws LinkLost when the controller has fallen silent.
+    void tick(Time now);
+
+    // The bytes to write now.
+    std::string take_output();
+
+    // Lines received since the last call, for a console view.
+    std::vector<std::string> take_lines();
+
+    // Attached, settings known, no halt under way.
+    bool ready() const { return phase_ == Phase::Ready && halt_ == Halt::None; }
+
+    // Nothing of ours burns or moves: the link may be closed.
+    bool may_close() const;
+
+    // The commands of Device. Throw Refused.
+    void start(std::string_view program);
+    void hold();
+    void resume();
+    void cancel();
+    void stop();
+    void home();
+    void unlock();
+    void jog(const Jog& jog);
+    void jog_cancel();
+    void console(std::string_view line);
+
+    // The link is gone: a running job ends as LinkLost.
+    void lose_link(const std::string& reason);
+
+    const DeviceStatus& status() const { return status_; }
+    const JobProgress& progress() const { return progress_; }
+
+private:
+    enum class Phase { Greeting, Resetting, AskingVersion, AskingSettings, Ready, Gone };
+    enum class Halt { None, Holding, Resetting };
+    enum class Origin { Job, Frame, Command };  // Frame: our own lines around a job.
+
+    struct Pending {
+        Origin origin = Origin::Command;
+        std::string text;
+        std::size_t number = 0;  // In the program's file.
+        bool alone = false;
+        double dwell_s = 0.0;
+    };
+
+    bool job_runs() const { return progress_.outcome == JobOutcome::Running; }
+    double settings_value(int number, double otherwise) const;
+    MachineFacts facts() const;
+    void require_ready(std::string_view what) const;
+    void submit(std::string line);
+
+    // Sending.
+    void fill();
+    bool send_line(const Pending& line);
+    void send_realtime(char byte) { output_ += byte; }
+    void poll();
+    void poll_soon() { polled_ = Time{}; }
+    std::chrono::milliseconds poll_interval() const;
+
+    // Events: session_events.cpp
+    void handle(const GrblEvent& event);
+    void handle_answer(const GrblEvent& event);
+    void handle_alarm(const GrblEvent& event);
+    void handle_banner(const GrblEvent& event);
+    void handle_setting(const GrblEvent& event);
+    void handle_message(const GrblEvent& event);
+    void handle_status(const StatusReport& report);
+    void take_positions(const StatusReport& report);
+    void attach_by(const StatusReport& report);
+    void halt_by(const StatusReport& report);
+
+    // Watching.
+    void watch_silence() const;
+    void watch_attach();
+    void watch_halt();
+    void watch_lost_answer(const StatusReport& report);
+    void watch_standing_beam(const StatusReport& report);
+    double pending_dwell_s() const;
+
+    // Ending.
+    void end_job(JobOutcome outcome, std::string reason);
+    void begin_halt();
+    void begin_reset();
+    void forget_lines();
+
+    Time now_;
+    Phase phase_ = Phase::Greeting;
+    Halt halt_ = Halt::None;
+    Time phase_since_;
+    Time halt_since_;
+    Time heard_;
+    Time polled_;
+    int unanswered_polls_ = 0;
+    std::optional<Time> standing_since_;     // Idle with lines unanswered.
+    std::optional<Time> beam_stands_since_;  // Idle or Hold:0 with S > 0 in FS.
+    bool resume_wanted_ = false;
+    bool critical_alarm_ = false;
+
+    GrblProtocol protocol_;
+    std::string output_;
+    std::vector<std::string> lines_;
+    std::deque<Pending> pending_;   // Sent, not yet answered; oldest first.
+    std::deque<Pending> commands_;  // By hand, not yet sent.
+
+    std::deque<Pending> job_;  // Lines still to send.
+    bool finishing_ = false;   // Every line is answered; the machine has still to stand.
+    bool cancelling_ = false;
+
+    DeviceStatus status_;
+    JobProgress progress_;
+    std::optional<int> sub_state_;
+    std::map<int, double> settings_;
+    std::string build_options_;
+    std::optional<std::array<double, 3>> work_offset_;
+};
+
+}  // namespace leafcutter::drivers
