@@ -24,6 +24,12 @@ std::vector<std::string> chart_warnings(const Cylinder& cylinder, const FlipRepo
             "the mesh is coarse for its shape: the foliation's modulus is certain to " +
             percent(cylinder.conformal_gap) + " only, so angles may be off; refine the mesh");
     }
+    if (repair.opened_limbs) {
+        warnings.emplace_back(
+            "the model has limbs too long for one chart: a few cells swallow each of them; cut a "
+            "hole "
+            "into their tips or weave them apart");
+    }
     if (repair.whole_chart) {
         warnings.push_back("flipped triangles were too many to mend one by one (" +
                            std::to_string(repair.flipped_as_solved) +

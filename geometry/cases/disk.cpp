@@ -20,7 +20,7 @@ namespace {
 // Vertices of the four sides, each from corner to corner, counter-clockwise: bottom (f = 0), right
 // (g = width), top (f = height), left (g = 0).
 using Sides = std::array<std::vector<int>, 4>;
-enum Side : std::size_t { kBottom, kRight, kTop, kLeft };
+enum Side : std::size_t { Bottom, Right, Top, Left };
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -109,9 +109,9 @@ Foliation foliate_disk(const TriangleMesh& mesh,
     const IntrinsicTriangulation delaunay = intrinsic_delaunay(map.mesh, map.edges);
     const std::vector<WeightedEdge> edges = cotangent_edges(delaunay);
     context.report("foliation", 0.2);
-    const Eigen::VectorXd f = between_sides(edges, split.lines, {kBottom, kTop});
+    const Eigen::VectorXd f = between_sides(edges, split.lines, {Bottom, Top});
     context.report("foliation", 0.5);
-    const Eigen::VectorXd g = between_sides(edges, split.lines, {kLeft, kRight});
+    const Eigen::VectorXd g = between_sides(edges, split.lines, {Left, Right});
     context.report("foliation", 0.8);
 
     // Both energies bound the modulus, one from above, one from below; their mean is much closer to
@@ -125,7 +125,7 @@ Foliation foliate_disk(const TriangleMesh& mesh,
         const auto i = static_cast<Eigen::Index>(v);
         map.gf[v] = {map.width * g[i], f[i]};
     }
-    for (const int v : sides[kRight]) {
+    for (const int v : sides[Right]) {
         map.gf[at(v)].x() = map.width;
     }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/harmonic/limbs.h"
 #include "geometry/laplacian.h"
 
 namespace leafcutter::geometry {
@@ -232,6 +233,23 @@ bool repair_locally(ChartMap& map,
     return bad.empty();
 }
 
+// Opens limbs that the chart shrank to nothing, everything else held. Returns whether there are
+// any.
+bool open_limbs(ChartMap& map, std::vector<WeightedEdge>& edges, const std::vector<Rail>& rails) {
+    const std::vector<double> depths = limb_depths(map);
+    std::vector<char> held(depths.size());
+    std::transform(depths.begin(), depths.end(), held.begin(),
+                   [](double depth) { return static_cast<char>(depth > 0.0 ? 0 : 1); });
+    hold_rails(held, rails);
+    const auto freed = std::count(held.begin(), held.end(), 0);
+    if (freed == 0 || freed == static_cast<std::ptrdiff_t>(held.size())) {
+        return false;
+    }
+    pull_along_limbs(edges, map, depths);
+    solve_again(map, edges, held);
+    return true;
+}
+
 }  // namespace
 
 FlipReport make_bijective(ChartMap& map, const std::vector<Rail>& rails, const Context& context) {
@@ -245,7 +263,8 @@ FlipReport make_bijective(ChartMap& map, const std::vector<Rail>& rails, const C
     for (const Rail& rail : rails) {
         make_monotone(map, boundary, turned_to_largest_step(map, boundary, rail));
     }
-    const std::vector<WeightedEdge> edges = positive_edges(map.mesh, map.edges);
+    std::vector<WeightedEdge> edges = positive_edges(map.mesh, map.edges);
+    report.opened_limbs = open_limbs(map, edges, rails);
     if (repair_locally(map, edges, rails, report)) {
         return report;
     }

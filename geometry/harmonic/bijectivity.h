@@ -4,9 +4,10 @@
 // promises that no triangle of the surface as given is flipped. The ladder, each step only where
 // the one before left a flipped triangle:
 //   1. boundary coordinates are made monotone along their rails;
-//   2. the vertices near flipped triangles are solved for again with positive weights, all others
+//   2. limbs shrunk beyond the resolution of numbers are opened (limbs.h), the rest held;
+//   3. the vertices near flipped triangles are solved for again with positive weights, all others
 //   held;
-//   3. the same for the whole chart. A harmonic map with positive weights whose boundary is a
+//   4. the same for the whole chart. A harmonic map with positive weights whose boundary is a
 //   convex
 //      polygon is an embedding (Tutte 1963, Floater 1997); so is one to an annulus with straight
 //      boundaries and to a torus (Gortler, Gotsman, Thurston, "Discrete one-forms on meshes",
@@ -30,8 +31,9 @@ struct Rail {
 
 struct FlipReport {
     int flipped_as_solved = 0;
-    int freed_vertices = 0;    // In the last local step.
-    bool whole_chart = false;  // Step 3 was needed.
+    int freed_vertices = 0;     // In the last local step.
+    bool opened_limbs = false;  // Step 2 found some.
+    bool whole_chart = false;   // Step 4 was needed.
 };
 
 // Changes `map.gf` only. No interior edge of the surface joins two vertices of one rail. Boundary

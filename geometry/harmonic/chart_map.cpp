@@ -12,7 +12,7 @@ namespace {
 
 // A triangle counts as flat below this ratio of doubled area to squared longest side. Far above
 // rounding, far below any triangle that sampling could have trouble with.
-constexpr double kFlat = 1e-9;
+constexpr double kFlat = 1e-12;
 // The triangles' areas add up to the chart's within rounding, or the map covers it more than once.
 constexpr double kAreaTolerance = 1e-6;
 
