@@ -33,6 +33,7 @@ test('events are told apart by their name, and unknown ones are passed over', ()
   assert.equal(readEvent('job', { seq: 3, job })?.seq, 3);
   assert.equal(readEvent('snapshot', { seq: 9, jobs: [job], cuts: [], devices: [] })?.type, 'snapshot');
   assert.equal(readEvent('weather', {}), null);
+  assert.deepEqual(readEvent('cut', { seq: 4, removed: 'c_1' }), { type: 'cut-removed', seq: 4, id: 'c_1' });
 });
 
 test('a problem keeps its detail and the fields at fault', () => {

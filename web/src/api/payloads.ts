@@ -177,17 +177,19 @@ export const listUnder =
   (value, path) =>
     record(value, path)(key, list(item));
 
-function jobEvent(payload: Fields, seq: number | null): FeedEvent {
-  const removed = payload['removed'];
-  if (typeof removed === 'string') return { type: 'job-removed', seq, id: removed };
-  return { type: 'job', seq, job: readJob(payload['job'], '/job') };
+// An event may tell of something that has been removed since.
+function removal(type: string, payload: Fields, seq: number | null): FeedEvent | null {
+  const id = payload['removed'];
+  return typeof id === 'string' && (type === 'job' || type === 'cut') ? { type: `${type}-removed`, seq, id } : null;
 }
 
 // `type` is the event's name, `data` its parsed JSON. Null for an event this page does not know.
 export function readEvent(type: string, data: unknown): FeedEvent | null {
   const payload = fields(data, '');
   const seq = optional(number, null)(payload['seq'], '/seq');
-  if (type === 'job') return jobEvent(payload, seq);
+  const removed = removal(type, payload, seq);
+  if (removed !== null) return removed;
+  if (type === 'job') return { type, seq, job: readJob(payload['job'], '/job') };
   if (type === 'cut') return { type, seq, cut: readCut(payload['cut'], '/cut') };
   if (type === 'device') return { type, seq, device: readDevice(payload['device'], '/device') };
   if (type !== 'snapshot') return null;

@@ -110,7 +110,7 @@ export interface Artifact {
 
 export type FeedEvent =
   | { readonly type: 'job'; readonly seq: number | null; readonly job: Job }
-  | { readonly type: 'job-removed'; readonly seq: number | null; readonly id: string }
+  | { readonly type: 'job-removed' | 'cut-removed'; readonly seq: number | null; readonly id: string }
   | { readonly type: 'cut'; readonly seq: number | null; readonly cut: Cut }
   | { readonly type: 'device'; readonly seq: number | null; readonly device: Device }
   | {

@@ -75,7 +75,7 @@ export const en = {
     title: 'Jobs',
     none: 'Nothing woven yet.',
     loading: 'Loading',
-    open: (name: string) => `Open ${name}`,
+    cutting: 'Cutting',
     counts: (strips: string, sheets: string) => `${strips} strips on ${sheets} sheets`,
   },
 
@@ -127,6 +127,8 @@ export const en = {
     reset: 'Reset view',
   },
 
+  view: { zoomIn: 'Zoom in', zoomOut: 'Zoom out' },
+
   strip: {
     label: 'Strip',
     none: 'None',
@@ -144,8 +146,6 @@ export const en = {
     tabs: 'Sheets',
     cut: 'cut',
     label: (id: number, pieces: number) => `Sheet ${id} with ${pieces} pieces. Arrow keys move it, plus and minus zoom.`,
-    zoomIn: 'Zoom in',
-    zoomOut: 'Zoom out',
     fit: 'Whole sheet',
     size: (width: string, height: string) => `${width} × ${height} mm`,
   },

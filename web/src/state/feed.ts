@@ -36,6 +36,8 @@ export function reduceFeed(feed: Feed, event: FeedEvent): Feed {
       return isStale(feed, event.job) ? feed : { ...feed, jobs: withItem(feed.jobs, event.job) };
     case 'job-removed':
       return { ...feed, jobs: without(feed.jobs, event.id) };
+    case 'cut-removed':
+      return { ...feed, cuts: without(feed.cuts, event.id) };
     case 'cut':
       return { ...feed, cuts: withItem(feed.cuts, event.cut) };
     case 'device':

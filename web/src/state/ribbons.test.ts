@@ -34,7 +34,7 @@ test('normals of a flat sheet point up', () => {
 test('weft and warp lie on opposite sides in the middle of every cell', () => {
   const mesh = sheet(3);
   const middle = (family: 'weft' | 'warp', quad: number): number => {
-    const { positions } = buildRibbons(mesh, checker(3), family, { steps: 4 });
+    const { positions } = buildRibbons(mesh, checker(3), family, { steps: 4, lift: 0.085 });
     return positions[3 * (quad * 10 + 4) + 2] ?? 0;
   };
   for (let q = 0; q < 9; q += 1) {

@@ -163,14 +163,14 @@ class RibbonWriter {
     const at = 3 * this.vertex;
     this.positions.set(add(bilinear(patch.points, u, v), normal, height * this.lift), at);
     this.normals.set(unit(cross(du, dv)), at);
-    this.shades.fill(0.55 + 0.225 * (height + 1), at, at + 3);
+    this.shades.fill(0.5 + 0.25 * (height + 1), at, at + 3);
     this.vertex += 1;
   }
 }
 
 // `warpOnTop` per quad, as weave.json has it.
 export function buildRibbons(mesh: QuadMesh, warpOnTop: Uint8Array, family: Family, options: RibbonOptions = {}): Ribbons {
-  const { steps = 4, gap = 0.06, lift = 0.085 } = options;
+  const { steps = 4, gap = 0.085, lift = 0.11 } = options;
   const normals = vertexNormals(mesh);
   const neighbours = quadNeighbours(mesh);
   const writer = new RibbonWriter(mesh.quadCount, steps, gap, lift * meanEdge(mesh));

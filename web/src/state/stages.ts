@@ -12,6 +12,12 @@ export interface Stage {
   readonly fraction: number;
 }
 
+// How far the whole computation is, between 0 and 1: stages count alike.
+export function wholeFraction(job: Job): number {
+  const at = kStages.findIndex((stage) => stage === job.progress.stage);
+  return at < 0 ? 0 : (at + job.progress.fraction) / kStages.length;
+}
+
 export function stagesOf(job: Job): readonly Stage[] {
   const finished = job.state === 'ready' || job.state === 'done';
   const at = kStages.indexOf(job.progress.stage as StageName);

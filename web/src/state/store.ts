@@ -3,10 +3,10 @@
 
 import { computed, signal } from '@preact/signals';
 
-import { listCuts, listDevices, listJobs } from '../api/client.ts';
+import { listCuts, listDevices, listJobs, listMaterials } from '../api/client.ts';
 import { Problem } from '../api/problem.ts';
 import { type EventStream, openEventStream } from '../api/event_stream.ts';
-import type { Device, FeedEvent } from '../api/types.ts';
+import type { Device, FeedEvent, Material } from '../api/types.ts';
 import { t } from '../messages/messages.ts';
 import { type Connection, type ConnectionSignal, nextConnection, retryDelayMs } from './connection.ts';
 import { type Draft, type DraftAction, kNewDraft, reduceDraft } from './draft.ts';
@@ -18,6 +18,16 @@ export const connection = signal<Connection>('idle');
 export const route = signal<Route>({ page: 'jobs' });
 export const draft = signal<Draft>(kNewDraft);
 export const connectedDevices = computed<readonly Device[]>(() => [...feed.value.devices.values()].filter(isConnected));
+
+export const materials = signal<readonly Material[]>([]);
+
+export async function loadMaterials(): Promise<void> {
+  if (materials.value.length === 0) materials.value = await listMaterials();
+}
+
+export function materialName(id: string): string {
+  return materials.value.find((material) => material.id === id)?.name ?? id;
+}
 
 export interface Notice {
   readonly key: number;

@@ -7,10 +7,16 @@ import type { Cut, Device, Job } from '../api/types.ts';
 import { count, duration, shortHash } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
 import { isOver } from '../state/feed.ts';
-import { attempt, connectedDevices, feed } from '../state/store.ts';
+import { attempt, connectedDevices, feed, materialName } from '../state/store.ts';
 import { AskButton, Bar } from './controls.tsx';
 
 const deviceName = (id: string): string => feed.value.devices.get(id)?.name ?? id;
+
+// A cut that waits only for its operator is ready, whatever its queue calls it.
+function cutWord(cut: Cut): string {
+  const state = cut.state === 'waiting' && cut.actions.includes('start') ? 'armed' : cut.state;
+  return t.cut.states[state](deviceName(cut.device));
+}
 
 function QueueForm(props: { readonly job: Job }) {
   const { job } = props;
@@ -28,7 +34,9 @@ function QueueForm(props: { readonly job: Job }) {
   };
   return (
     <div class="cut-queue">
-      <p class="cut-left">{uncut.length === 0 ? t.cut.allDone : t.cut.sheetsLeft(uncut.length)}</p>
+      <p class={uncut.length === 0 ? 'cut-left cut-done' : 'cut-left'}>
+        {uncut.length === 0 ? t.cut.allDone : t.cut.sheetsLeft(uncut.length)}
+      </p>
       <label class="field inline">
         <span>{t.cut.machine}</span>
         <select value={chosen.id} onChange={(event) => setDevice(event.currentTarget.value)}>
@@ -55,7 +63,7 @@ function ClearBed(props: { readonly cut: Cut; readonly job: Job; readonly action
   return (
     <div class="clear-bed">
       <div class="clear-bed-words">
-        <h3>{t.cut.load(cut.sheet, material)}</h3>
+        <h3>{t.cut.load(cut.sheet, materialName(material))}</h3>
         <p class="quiet">
           {t.cut.program} <code title={cut.programSha256}>{shortHash(cut.programSha256)}</code>
         </p>
@@ -133,7 +141,7 @@ function RunningCut(props: { readonly cut: Cut; readonly job: Job }) {
   return (
     <>
       <div class="cut-state">
-        <p class={`cut-word cut-${cut.state}`}>{t.cut.states[cut.state](deviceName(cut.device))}</p>
+        <p class={`cut-word cut-${cut.state}`}>{cutWord(cut)}</p>
         <CutButtons cut={cut} />
       </div>
       {moving && <CutProgressBar cut={cut} job={job} />}
@@ -149,15 +157,15 @@ export function CutPanel(props: { readonly job: Job; readonly cut: Cut | null })
   return (
     <section class={`panel cut ${running ? `running state-${cut.state}` : ''}`} aria-label={t.cut.title}>
       <div class="visually-hidden" aria-live="polite">
-        {cut === null ? '' : t.cut.states[cut.state](deviceName(cut.device))}
+        {cut === null ? '' : cutWord(cut)}
       </div>
       {running ? (
         <RunningCut cut={cut} job={job} />
       ) : (
         <>
-          {cut !== null && (
+          {cut !== null && cut.state !== 'done' && (
             <p class={`cut-word cut-${cut.state}`}>
-              {t.cut.states[cut.state](deviceName(cut.device))}
+              {cutWord(cut)}
               {cut.reason !== '' && <span class="quiet"> {cut.reason}</span>}
             </p>
           )}

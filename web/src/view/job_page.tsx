@@ -8,7 +8,7 @@ import { bytes, count, duration } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
 import { currentCut } from '../state/feed.ts';
 import { jobPackage, loadPackage } from '../state/package_store.ts';
-import { attempt, feed, go, receive } from '../state/store.ts';
+import { attempt, feed, go, loadMaterials, receive } from '../state/store.ts';
 import { AskButton, Chip } from './controls.tsx';
 import { CutPanel } from './cut_panel.tsx';
 import { FilesPanel } from './files_panel.tsx';
@@ -103,7 +103,10 @@ function Failure(props: { readonly job: Job }) {
 
 function Result(props: { readonly job: Job }) {
   const { job } = props;
-  useEffect(() => void loadPackage(job.id), [job.id]);
+  useEffect(() => {
+    void loadPackage(job.id);
+    loadMaterials().catch(() => undefined);
+  }, [job.id]);
   const cut = currentCut(feed.value, job.id);
   const now = jobPackage.value;
   const content = now.state === 'ready' && now.job === job.id ? now.content : null;
@@ -155,8 +158,14 @@ export function JobPage(props: { readonly id: string }) {
         <JobActions job={job} />
       </header>
       <Failure job={job} />
-      {finished ? <Summary job={job} /> : <StageRow job={job} />}
-      <Warnings job={job} />
+      {finished ? (
+        <div class="job-facts">
+          <Summary job={job} />
+          <Warnings job={job} />
+        </div>
+      ) : (
+        <StageRow job={job} />
+      )}
       {finished && <Result job={job} />}
     </div>
   );

@@ -6,9 +6,9 @@ import type { Job } from '../api/types.ts';
 import { age, count, duration } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
 import { kRepeats } from '../state/draft.ts';
-import { newestFirst } from '../state/feed.ts';
+import { currentCut, newestFirst } from '../state/feed.ts';
 import { formatRoute } from '../state/route.ts';
-import { kStages } from '../state/stages.ts';
+import { wholeFraction } from '../state/stages.ts';
 import { draft, feed } from '../state/store.ts';
 import { forget, type Sending, sendings } from '../state/uploads.ts';
 import { Bar, Chip } from './controls.tsx';
@@ -19,9 +19,6 @@ import { Swatch } from './swatch.tsx';
 function Hero() {
   return (
     <section class="hero" aria-label={t.drop.title}>
-      <div class="hero-picture">
-        <Swatch repeat={kRepeats.plain} size={9} />
-      </div>
       <div class="hero-words">
         <h1>{t.drop.title}</h1>
         <p>{t.drop.lead}</p>
@@ -29,6 +26,9 @@ function Hero() {
           <ChooseFile class="button primary" label={t.drop.choose} />
           <span class="quiet">{t.drop.formats}</span>
         </p>
+      </div>
+      <div class="hero-picture">
+        <Swatch repeat={kRepeats['twill-2x2']} rows={8} columns={18} />
       </div>
     </section>
   );
@@ -47,16 +47,14 @@ function SendingRow(props: { readonly sending: Sending }) {
   );
 }
 
-// How far the whole computation is: stages count alike.
-function wholeFraction(job: Job): number {
-  const at = kStages.findIndex((stage) => stage === job.progress.stage);
-  return at < 0 ? 0 : (at + job.progress.fraction) / kStages.length;
-}
-
 function JobFacts(props: { readonly job: Job }) {
   const { job } = props;
   if (job.state === 'computing') {
     return <Bar fraction={wholeFraction(job)} label={t.jobState.computing} />;
+  }
+  const cut = currentCut(feed.value, job.id);
+  if (cut !== null && (cut.state === 'cutting' || cut.state === 'paused')) {
+    return <Bar fraction={cut.progress.fraction} label={t.jobs.cutting} kind="ember" />;
   }
   if (job.error !== null) return <span class="quiet job-fault">{job.error.detail}</span>;
   if (job.summary === null) return <span class="quiet">{job.file.name}</span>;

@@ -4,6 +4,7 @@ import { commandDevice } from '../api/client.ts';
 import type { Device } from '../api/types.ts';
 import { figure, millimetres } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
+import { isConnected } from '../state/feed.ts';
 import { formatRoute } from '../state/route.ts';
 import { attempt, feed } from '../state/store.ts';
 import { Bar, Chip } from './controls.tsx';
@@ -39,8 +40,8 @@ function Bed(props: { readonly device: Device }) {
       <rect class="bed-plate" width={width} height={height} rx={8} />
       <path class="bed-grid" d={`M${width / 2} 0V${height}M0 ${height / 2}H${width}`} />
       <g class={status.powerS > 0 ? 'head hot' : 'head'} transform={`translate(${inside(x, width)} ${height - inside(y, height)})`}>
-        <path d="M-18 0h36M0 -18v36" />
-        <circle r={9} />
+        <path d="M-34 0h68M0 -34v68" />
+        <circle r={15} />
       </g>
     </svg>
   );
@@ -73,7 +74,7 @@ function MachineCard(props: { readonly device: Device }) {
           {alarm} {status.message}
         </p>
       )}
-      {status.state !== 'disconnected' && (
+      {isConnected(device) && (
         <div class="machine-body">
           <div class="machine-where">
             <Bed device={device} />
@@ -85,7 +86,7 @@ function MachineCard(props: { readonly device: Device }) {
       <CurrentCut device={device} />
       <div class="buttons">
         {kCommands
-          .filter((command) => actions.includes(command))
+          .filter((command) => isConnected(device) && actions.includes(command))
           .map((command) => (
             <button
               key={command}

@@ -1,13 +1,11 @@
 // The form that turns dropped meshes into jobs.
 
-import { useEffect, useId, useState } from 'preact/hooks';
+import { useEffect, useId } from 'preact/hooks';
 
-import { listMaterials } from '../api/client.ts';
-import type { Material } from '../api/types.ts';
 import { bytes } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
 import { type Draft, type DraftFile, draftFault, kPatterns, kRepeats } from '../state/draft.ts';
-import { attempt, changeDraft, draft } from '../state/store.ts';
+import { attempt, changeDraft, draft, loadMaterials, materials } from '../state/store.ts';
 import { sendDraft } from '../state/uploads.ts';
 import { ChooseFile } from './drop.tsx';
 import { Icon } from './icons.tsx';
@@ -76,7 +74,7 @@ function PatternPicker() {
               checked={draft.value.pattern === pattern}
               onChange={() => set({ pattern })}
             />
-            <Swatch repeat={kRepeats[pattern]} size={6} />
+            <Swatch repeat={kRepeats[pattern]} rows={6} columns={6} />
             <span>{t.patterns[pattern]}</span>
           </label>
         ))}
@@ -85,13 +83,9 @@ function PatternPicker() {
   );
 }
 
-function MaterialSelect(props: {
-  readonly label: string;
-  readonly family: 'weft' | 'warp';
-  readonly materials: readonly Material[];
-}) {
-  const { family, materials } = props;
-  const chosen = materials.find((material) => material.id === draft.value[family]);
+function MaterialSelect(props: { readonly label: string; readonly family: 'weft' | 'warp' }) {
+  const { family } = props;
+  const chosen = materials.value.find((material) => material.id === draft.value[family]);
   return (
     <label class="field">
       <span>{props.label}</span>
@@ -99,7 +93,7 @@ function MaterialSelect(props: {
         <span class={`colour ${chosen === undefined ? family : ''}`} style={chosen === undefined ? {} : { background: chosen.colour }} />
         <select value={draft.value[family]} onChange={(event) => set({ [family]: event.currentTarget.value })}>
           <option value="">{t.draft.standard}</option>
-          {materials.map((material) => (
+          {materials.value.map((material) => (
             <option key={material.id} value={material.id}>
               {material.name}
             </option>
@@ -111,10 +105,7 @@ function MaterialSelect(props: {
 }
 
 export function NewJob() {
-  const [materials, setMaterials] = useState<readonly Material[]>([]);
-  useEffect(() => {
-    void attempt(async () => setMaterials(await listMaterials()));
-  }, []);
+  useEffect(() => void attempt(loadMaterials), []);
   const now = draft.value;
   const fault = draftFault(now);
   return (
@@ -149,8 +140,8 @@ export function NewJob() {
           bad={fault === 'strip-width' || fault === 'strip-too-wide'}
           onInput={(stripWidthMm) => set({ stripWidthMm })}
         />
-        <MaterialSelect label={t.draft.weft} family="weft" materials={materials} />
-        <MaterialSelect label={t.draft.warp} family="warp" materials={materials} />
+        <MaterialSelect label={t.draft.weft} family="weft" />
+        <MaterialSelect label={t.draft.warp} family="warp" />
       </div>
       <p class="fault" role="alert">
         {fault === null ? '' : t.draft.faults[fault]}

@@ -1,5 +1,6 @@
 // One sheet as a drawing that can be zoomed and moved, with what is already burnt on top.
 
+import type { ComponentChildren } from 'preact';
 import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 
 import { t } from '../messages/messages.ts';
@@ -7,7 +8,7 @@ import type { Burnt } from '../state/burn.ts';
 import { chooseStrip, chosenStrip, pointedStrip } from '../state/package_store.ts';
 import type { SheetDrawing } from '../state/sheets.ts';
 import { type Box, centre, fit, panBy, zoomAt } from '../state/viewport.ts';
-import { Icon } from './icons.tsx';
+import { ZoomButtons } from './zoom_buttons.tsx';
 
 function stripUnder(event: Event): string | null {
   const target = event.target instanceof Element ? event.target.closest('[data-strip]') : null;
@@ -138,7 +139,12 @@ function editByKey(event: KeyboardEvent, sheet: Box): ((view: Box) => Box) | nul
   return event.ctrlKey || event.metaKey ? null : (edits[event.key] ?? null);
 }
 
-export function SheetCanvas(props: { readonly sheet: SheetDrawing; readonly burnt: Burnt | null; readonly hot: boolean }) {
+export function SheetCanvas(props: {
+  readonly sheet: SheetDrawing;
+  readonly burnt: Burnt | null;
+  readonly hot: boolean;
+  readonly about: ComponentChildren; // Said below the drawing.
+}) {
   const { sheet, burnt, hot } = props;
   const box = useMemo(() => ({ x: 0, y: 0, width: sheet.widthMm, height: sheet.heightMm }), [sheet]);
   const [view, setView] = useState(() => fit(box));
@@ -147,7 +153,8 @@ export function SheetCanvas(props: { readonly sheet: SheetDrawing; readonly burn
   const zoom = (factor: number): void => setView(zoomAt(view, box, centre(view), factor));
   const whole = view.width >= fit(box).width;
   return (
-    <div class="view sheet-view">
+    <>
+      <div class="view">
       <svg
         ref={svg}
         class={whole ? 'sheet whole' : 'sheet'}
@@ -169,17 +176,11 @@ export function SheetCanvas(props: { readonly sheet: SheetDrawing; readonly burn
           {burnt !== null && <Burn burnt={burnt} hot={hot} scale={view.width / 400} />}
         </g>
       </svg>
-      <div class="view-buttons">
-        <button type="button" aria-label={t.sheets.zoomIn} onClick={() => zoom(1.5)}>
-          <Icon name="plus" />
-        </button>
-        <button type="button" aria-label={t.sheets.zoomOut} onClick={() => zoom(1 / 1.5)}>
-          <Icon name="minus" />
-        </button>
-        <button type="button" aria-label={t.sheets.fit} onClick={() => setView(fit(box))}>
-          <Icon name="fit" />
-        </button>
       </div>
-    </div>
+      <div class="view-foot">
+        {props.about}
+        <ZoomButtons fitLabel={t.sheets.fit} onZoom={zoom} onFit={() => setView(fit(box))} />
+      </div>
+    </>
   );
 }

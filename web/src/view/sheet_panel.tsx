@@ -7,6 +7,7 @@ import { figure } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
 import { type Burnt, type BurnPlan, burntSoFar } from '../state/burn.ts';
 import { type JobPackage, loadBurnPlan, shownSheet } from '../state/package_store.ts';
+import { materialName } from '../state/store.ts';
 import { Panel, Segmented } from './controls.tsx';
 import { SheetCanvas } from './sheet_canvas.tsx';
 
@@ -55,11 +56,18 @@ export function SheetPanel(props: { readonly job: Job; readonly content: JobPack
         <Segmented label={t.sheets.tabs} choices={choices} value={sheet.id} onChange={(id) => (shownSheet.value = id)} />
       }
     >
-      <SheetCanvas sheet={sheet} burnt={burnt} hot={cut?.state === 'cutting' && cut.sheet === sheet.id} />
-      <p class="sheet-about quiet">
-        {t.sheets.one(sheet.id)} · {sheet.material} · {t.sheets.size(figure(sheet.widthMm, 4), figure(sheet.heightMm, 4))}
-        {isCut(sheet.id) && <span class="tag">{t.sheets.cut}</span>}
-      </p>
+      <SheetCanvas
+        sheet={sheet}
+        burnt={burnt}
+        hot={cut?.state === 'cutting' && cut.sheet === sheet.id}
+        about={
+          <p class="sheet-about quiet">
+            {t.sheets.one(sheet.id)} · {materialName(sheet.material)} ·{' '}
+            {t.sheets.size(figure(sheet.widthMm, 4), figure(sheet.heightMm, 4))}
+            {isCut(sheet.id) && <span class="tag">{t.sheets.cut}</span>}
+          </p>
+        }
+      />
     </Panel>
   );
 }

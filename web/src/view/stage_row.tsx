@@ -1,8 +1,20 @@
-// The computation's stages as a row of steps.
+// The computation's stages as a row of steps, and a loom that fills as they pass.
 
 import type { Job } from '../api/types.ts';
 import { t } from '../messages/messages.ts';
-import { stagesOf } from '../state/stages.ts';
+import { kRepeats } from '../state/draft.ts';
+import { stagesOf, wholeFraction } from '../state/stages.ts';
+import { Swatch } from './swatch.tsx';
+
+const kColumns = 48;
+
+function Loom(props: { readonly fraction: number }) {
+  return (
+    <div class="loom">
+      <Swatch repeat={kRepeats.plain} rows={9} columns={kColumns} woven={Math.round(props.fraction * kColumns)} />
+    </div>
+  );
+}
 
 export function StageRow(props: { readonly job: Job }) {
   const stages = stagesOf(props.job);
@@ -19,6 +31,7 @@ export function StageRow(props: { readonly job: Job }) {
           </li>
         ))}
       </ol>
+      {(props.job.state === 'computing' || props.job.state === 'queued') && <Loom fraction={wholeFraction(props.job)} />}
       <p class="visually-hidden" aria-live="polite">
         {running === undefined ? t.jobState[props.job.state] : t.stages[running.name]}
       </p>

@@ -5,8 +5,8 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 import { t } from '../../messages/messages.ts';
 import { chooseStrip, chosenStrip, type JobPackage, pointedStrip } from '../../state/package_store.ts';
 import { Panel, Segmented } from '../controls.tsx';
-import { Icon } from '../icons.tsx';
 import { StripPicker } from '../strip_picker.tsx';
+import { ZoomButtons } from '../zoom_buttons.tsx';
 import type { ModelScene, Palette, ViewMode } from './scene.ts';
 
 const kModes: readonly ViewMode[] = ['woven', 'weft', 'warp', 'surface'];
@@ -134,19 +134,15 @@ export function ModelPanel(props: { readonly name: string; readonly content: Job
         />
         {scene === 'loading' && <p class="view-note">{t.model.loading}</p>}
         {scene === 'none' && <p class="view-note">{t.model.none}</p>}
-        <div class="view-buttons">
-          <button type="button" aria-label={t.sheets.zoomIn} onClick={() => live?.zoom(1.25)}>
-            <Icon name="plus" />
-          </button>
-          <button type="button" aria-label={t.sheets.zoomOut} onClick={() => live?.zoom(0.8)}>
-            <Icon name="minus" />
-          </button>
-          <button type="button" aria-label={t.model.reset} onClick={() => live?.reset()}>
-            <Icon name="fit" />
-          </button>
-        </div>
       </div>
-      <StripPicker index={props.content.index} />
+      <div class="view-foot">
+        <StripPicker index={props.content.index} />
+        <ZoomButtons
+          fitLabel={t.model.reset}
+          onZoom={(factor) => live?.zoom(factor)}
+          onFit={() => live?.reset()}
+        />
+      </div>
     </Panel>
   );
 }

@@ -217,10 +217,10 @@ class Stage {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.camera.up.set(0, 0, 1);
-    const sun = new DirectionalLight('#ffffff', 2.1);
-    sun.position.set(-0.4, 0.9, 0.7);
+    const sun = new DirectionalLight('#ffffff', 2.2);
+    sun.position.set(-0.5, 0.8, 0.9);
     this.camera.add(sun);
-    this.scene.add(new AmbientLight('#ffffff', 1.15), this.camera);
+    this.scene.add(new AmbientLight('#ffffff', 1.45), this.camera);
     this.controls = new OrbitControls(this.camera, canvas);
     // The wheel belongs to the page until the view was clicked or reached by keyboard.
     this.controls.enableZoom = false;
