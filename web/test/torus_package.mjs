@@ -94,7 +94,10 @@ function makePieces(mesh, strips, parts) {
       for (let k = 1; k < left.length - 1; k += 1) {
         marks.push({ kind: 'score', path: tick(left[k], right[k]) }, { kind: 'score', path: tick(right[k], left[k]) });
       }
-      marks.push({ kind: 'engrave', text: id, at: right[0], angle_deg: 0, height_mm: 3 });
+      const [dx, dy] = minus(right[1], right[0]);
+      const angle = (Math.atan2(dy, dx) * 180) / Math.PI;
+      const at = [0, 1].map((k) => round(right[0][k] + 0.3 * (left[0][k] - right[0][k]) + 0.1 * (right[1][k] - right[0][k])));
+      marks.push({ kind: 'engrave', text: id, at, angle_deg: round(angle), height_mm: 3 });
       strip.pieces.push(id);
       pieces.push({ id, strip: strip.id, first_cell: first, cell_count: cells.length, left, right, bend: cells.map(() => 'ac'), outline, marks });
     }

@@ -23,6 +23,10 @@ export interface Strip {
 export interface Mark {
   readonly kind: string;
   readonly path: readonly Point[]; // Empty for text.
+  readonly text: string; // Empty for a line.
+  readonly at: Point;
+  readonly angleDeg: number;
+  readonly heightMm: number;
 }
 
 export interface Piece {
@@ -75,7 +79,14 @@ const readStrip: Reader<Strip> = (value, path) => {
 
 const readMark: Reader<Mark> = (value, path) => {
   const get = record(value, path);
-  return { kind: get('kind', text), path: get('path', optional(list(point), [])) };
+  return {
+    kind: get('kind', text),
+    path: get('path', optional(list(point), [])),
+    text: get('text', optional(text, '')),
+    at: get('at', optional(point, [0, 0] as const)),
+    angleDeg: get('angle_deg', optional(number, 0)),
+    heightMm: get('height_mm', optional(number, 0)),
+  };
 };
 
 const readPiece: Reader<Piece> = (value, path) => {

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import type { Layout, Strips } from '../api/package_files.ts';
+import type { Layout, Mark, Strips } from '../api/package_files.ts';
 import { drawSheets, place } from './sheets.ts';
 
 const still = { piece: 'W1.1', xMm: 0, yMm: 0, rotationDeg: 0, mirrored: false };
@@ -12,10 +12,13 @@ test('a placement mirrors, then rotates, then moves', () => {
   assert.ok(Math.abs(y - 17) < 1e-12);
 });
 
+const line: Mark = { kind: 'score', path: [[1, 0], [1, 1]], text: '', at: [0, 0], angleDeg: 0, heightMm: 0 };
+const label: Mark = { kind: 'engrave', path: [], text: 'W1.1', at: [1, 2], angleDeg: 30, heightMm: 3 };
+
 test('pieces are drawn with their strip and family, unknown ones left out', () => {
   const strips: Strips = {
     strips: [{ id: 'W1', family: 'weft', closed: false, quads: [0], pieces: ['W1.1'] }],
-    pieces: [{ id: 'W1.1', strip: 'W1', outline: [[0, 0], [4, 0], [4, 1]], marks: [{ kind: 'score', path: [[1, 0], [1, 1]] }] }],
+    pieces: [{ id: 'W1.1', strip: 'W1', outline: [[0, 0], [4, 0], [4, 1]], marks: [line, label] }],
   };
   const layout: Layout = {
     densityPercent: 1,
@@ -29,4 +32,5 @@ test('pieces are drawn with their strip and family, unknown ones left out', () =
   assert.equal(pieces[0]?.family, 'weft');
   assert.equal(pieces[0]?.outline, 'M1.00 0.00L5.00 0.00L5.00 1.00Z');
   assert.equal(pieces[0]?.marks, 'M2.00 0.00L2.00 1.00');
+  assert.deepEqual(pieces[0]?.labels, [{ text: 'W1.1', at: [2, 2], angleDeg: 30, heightMm: 3 }]);
 });

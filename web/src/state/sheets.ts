@@ -1,7 +1,15 @@
 // A sheet as paths to draw: where each piece lies, and what is marked on it. Coordinates stay those of
 // the sheet (origin lower left, y up); the view turns the picture over.
 
-import type { Family, Layout, LayoutSheet, Piece, Placement, Point, Strips } from '../api/package_files.ts';
+import type { Family, Layout, LayoutSheet, Mark, Piece, Placement, Point, Strips } from '../api/package_files.ts';
+
+// Text as it is engraved: left end of its base line, turned counter-clockwise.
+export interface Label {
+  readonly text: string;
+  readonly at: Point;
+  readonly angleDeg: number;
+  readonly heightMm: number;
+}
 
 export interface PieceDrawing {
   readonly piece: string;
@@ -9,6 +17,7 @@ export interface PieceDrawing {
   readonly family: Family;
   readonly outline: string; // SVG path data.
   readonly marks: string;
+  readonly labels: readonly Label[];
 }
 
 export interface SheetDrawing {
@@ -31,6 +40,12 @@ export function pathData(points: readonly Point[]): string {
   return points.map(([x, y], index) => `${index === 0 ? 'M' : 'L'}${x.toFixed(2)} ${y.toFixed(2)}`).join('');
 }
 
+function drawLabel(mark: Mark, placement: Placement): Label {
+  // A mirrored piece turns its text the other way round; it stays readable on the screen.
+  const angleDeg = placement.rotationDeg + (placement.mirrored ? 180 - mark.angleDeg : mark.angleDeg);
+  return { text: mark.text, at: place(placement, mark.at), angleDeg, heightMm: mark.heightMm };
+}
+
 function drawPiece(piece: Piece, family: Family, placement: Placement): PieceDrawing {
   const put = (points: readonly Point[]): readonly Point[] => points.map((point) => place(placement, point));
   return {
@@ -39,6 +54,7 @@ function drawPiece(piece: Piece, family: Family, placement: Placement): PieceDra
     family,
     outline: `${pathData(put(piece.outline))}Z`,
     marks: piece.marks.map((mark) => pathData(put(mark.path))).join(''),
+    labels: piece.marks.filter((mark) => mark.text !== '').map((mark) => drawLabel(mark, placement)),
   };
 }
 

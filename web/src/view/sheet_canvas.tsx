@@ -6,7 +6,7 @@ import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 import { t } from '../messages/messages.ts';
 import type { Burnt } from '../state/burn.ts';
 import { chooseStrip, chosenStrip, pointedStrip } from '../state/package_store.ts';
-import type { SheetDrawing } from '../state/sheets.ts';
+import type { Label, SheetDrawing } from '../state/sheets.ts';
 import { type Box, centre, fit, panBy, zoomAt } from '../state/viewport.ts';
 import { ZoomButtons } from './zoom_buttons.tsx';
 
@@ -15,7 +15,21 @@ function stripUnder(event: Event): string | null {
   return target?.getAttribute('data-strip') ?? null;
 }
 
-function Pieces(props: { readonly sheet: SheetDrawing }) {
+// Labels are only drawn where they can be read.
+const kReadableViewMm = 330;
+
+function LabelText(props: { readonly label: Label }) {
+  const { text, at, angleDeg, heightMm } = props.label;
+  const transform = `translate(${at[0]} ${at[1]}) rotate(${angleDeg}) scale(1 -1)`;
+  // A capital is about 0.72 of the font's size.
+  return (
+    <text class="label" transform={transform} font-size={heightMm / 0.72}>
+      {text}
+    </text>
+  );
+}
+
+function Pieces(props: { readonly sheet: SheetDrawing; readonly labels: boolean }) {
   const pointed = pointedStrip.value;
   const chosen = chosenStrip.value;
   const shade = (strip: string): string => (strip === chosen ? 'chosen' : strip === pointed ? 'pointed' : '');
@@ -25,6 +39,7 @@ function Pieces(props: { readonly sheet: SheetDrawing }) {
         <g key={piece.piece} class={`piece ${piece.family} ${shade(piece.strip)}`} data-strip={piece.strip}>
           <path class="outline" d={piece.outline} />
           {piece.marks !== '' && <path class="marks" d={piece.marks} />}
+          {props.labels && piece.labels.map((label) => <LabelText key={`${label.text}${label.at.join()}`} label={label} />)}
         </g>
       ))}
     </>
@@ -172,7 +187,7 @@ export function SheetCanvas(props: {
       >
         <rect class="paper" width={sheet.widthMm} height={sheet.heightMm} />
         <g transform={`translate(0 ${sheet.heightMm}) scale(1 -1)`}>
-          <Pieces sheet={sheet} />
+          <Pieces sheet={sheet} labels={view.width < kReadableViewMm} />
           {burnt !== null && <Burn burnt={burnt} hot={hot} scale={view.width / 400} />}
         </g>
       </svg>
