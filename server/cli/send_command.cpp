@@ -1,0 +1,126 @@
+// `leafcutter send PROGRAM --device URI`: streams a G-code file to a machine, no daemon.
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "drivers/device.h"
+#include "drivers/grbl/program.h"
+#include "drivers/transport.h"
+#include "geometry/error.h"
+#include "server/cli/command.h"
+#include "server/cli/input_file.h"
+#include "server/cli/interrupt.h"
+#include "server/cli/progress_line.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr std::size_t kLargestProgram = std::size_t{512} << 20U;
+constexpr milliseconds kSlice{50};
+constexpr milliseconds kShowEvery{250};
+constexpr std::chrono::seconds kCancelTime{10};
+
+struct SendOptions {
+    std::string program;
+    std::string device;
+};
+
+std::string read_text(const std::string& path) {
+    const std::vector<std::byte> bytes = read_input_file(path, kLargestProgram);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::unique_ptr<drivers::Device> open(const std::string& uri) {
+    try {
+        return drivers::open_device(uri);
+    } catch (const std::invalid_argument& error) {
+        throw UsageError(error.what());
+    }
+}
+
+void show(const drivers::Device& device, ProgressLine& line) {
+    const drivers::JobProgress progress = device.progress();
+    const drivers::DeviceStatus status = device.status();
+    const std::string text = fmt::format(
+        "{}, line {} of {}, X{:.0f} Y{:.0f}", to_string(status.state), progress.lines_acknowledged,
+        progress.lines_total, status.work_position_mm[0], status.work_position_mm[1]);
+    const std::size_t total = std::max<std::size_t>(progress.lines_total, 1);
+    line.show(text, static_cast<double>(progress.lines_acknowledged) / static_cast<double>(total));
+}
+
+void start(drivers::Device& device, std::string program) {
+    try {
+        device.start(std::move(program));
+    } catch (const drivers::ProgramRefused& error) {
+        throw UsageError(error.what());
+    }
+}
+
+void run_to_end(drivers::Device& device, ProgressLine& line, const std::stop_token& interrupt) {
+    bool cancelled = false;
+    Clock::time_point cancelled_at{};
+    Clock::time_point shown{};
+    while (device.progress().outcome == drivers::JobOutcome::Running) {
+        if (interrupt.stop_requested() && !cancelled) {
+            cancelled = true;
+            cancelled_at = Clock::now();
+            device.cancel();
+        }
+        if (cancelled && Clock::now() - cancelled_at > kCancelTime) {
+            device.stop();
+        }
+        device.run_once(kSlice);
+        if (Clock::now() - shown >= kShowEvery) {
+            shown = Clock::now();
+            show(device, line);
+        }
+    }
+    line.clear();
+    if (cancelled) {
+        throw geometry::Cancelled();
+    }
+}
+
+void send(const SendOptions& options, const CommonOptions& common) {
+    if (options.program.size() > 4 &&
+        options.program.substr(options.program.size() - 4) == ".egv") {
+        throw UsageError(options.program +
+                         ": EGV files are for lihuiyu devices, which are not supported yet");
+    }
+    std::string program = read_text(options.program);
+    const InterruptWatch interrupt;
+    const std::unique_ptr<drivers::Device> device = open(options.device);
+    ProgressLine line(common);
+    start(*device, std::move(program));
+    run_to_end(*device, line, interrupt.token());
+    const drivers::JobProgress progress = device->progress();
+    if (progress.outcome != drivers::JobOutcome::Done) {
+        throw DeviceFailed(options.device + ": " + progress.reason);
+    }
+}
+
+}  // namespace
+
+void add_send_command(CLI::App& app, const CommonOptions& common) {
+    CLI::App* command =
+        app.add_subcommand("send", "Streams a G-code program to a device, with progress");
+    const auto options = std::make_shared<SendOptions>();  // Lives as long as the callback.
+    command->add_option("program", options->program, "A G-code file")->required();
+    command
+        ->add_option("--device", options->device,
+                     "grbl:/dev/PORT?baud=N, grbl:tcp://host:port, sim:grbl")
+        ->required();
+    command->callback([options, &common] { send(*options, common); });
+}
+
+}  // namespace leafcutter::server
