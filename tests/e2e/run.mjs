@@ -128,8 +128,12 @@ async function confirmBed(page) {
   assert.equal(await fire.isEnabled(), false, 'the laser must not start before the bed was said to be clear');
   assert.match(await page.innerText('.clear-bed h3'), /sheet \d+/i);
   assert.match(await page.innerText('.clear-bed code'), /^[0-9a-f]{12}$/);
-  await page.check('.tick input');
-  await fire.click();
+  // By keyboard alone, as with one hand at the machine.
+  await page.focus('.tick input');
+  await page.keyboard.press('Space');
+  await page.keyboard.press('Tab');
+  assert.equal(await fire.evaluate((button) => button === document.activeElement), true);
+  await page.keyboard.press('Enter');
 }
 
 test('nothing burns before the operator says that the bed is clear', async () => {

@@ -18,6 +18,14 @@ test('keys stay unique when files come and go', () => {
   assert.equal(new Set(two.files.map((entry) => entry.key)).size, two.files.length);
 });
 
+test('a file that was refused comes back under the name it was given', () => {
+  const one = reduceDraft(kNewDraft, { type: 'add', files: [file('a.obj')] });
+  const named = reduceDraft(one, { type: 'rename', key: 1, name: 'Ring' });
+  const later = reduceDraft(reduceDraft(named, { type: 'clear' }), { type: 'add', files: [file('b.obj')] });
+  const back = reduceDraft(later, { type: 'put-back', files: named.files });
+  assert.deepEqual(back.files.map(({ key, name }) => [key, name]), [[1, 'b'], [2, 'Ring']]);
+});
+
 test('clearing forgets the files and keeps the settings', () => {
   const set = reduceDraft(kNewDraft, { type: 'set', values: { stripWidthMm: '6' } });
   const cleared = reduceDraft(reduceDraft(set, { type: 'add', files: [file('a.obj')] }), { type: 'clear' });

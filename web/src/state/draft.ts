@@ -31,18 +31,24 @@ export const kNewDraft: Draft = {
 
 export type DraftAction =
   | { readonly type: 'add'; readonly files: readonly File[] }
+  | { readonly type: 'put-back'; readonly files: readonly DraftFile[] }
   | { readonly type: 'drop'; readonly key: number }
   | { readonly type: 'rename'; readonly key: number; readonly name: string }
   | { readonly type: 'set'; readonly values: Partial<Omit<Draft, 'files'>> }
   | { readonly type: 'clear' };
 
+function withFiles(draft: Draft, files: readonly Omit<DraftFile, 'key'>[]): Draft {
+  const next = Math.max(0, ...draft.files.map((entry) => entry.key)) + 1;
+  const added = files.map(({ file, name }, index) => ({ key: next + index, file, name }));
+  return { ...draft, files: [...draft.files, ...added] };
+}
+
 export function reduceDraft(draft: Draft, action: DraftAction): Draft {
   switch (action.type) {
-    case 'add': {
-      const next = Math.max(0, ...draft.files.map((entry) => entry.key)) + 1;
-      const added = action.files.map((file, index) => ({ key: next + index, file, name: stem(file.name) }));
-      return { ...draft, files: [...draft.files, ...added] };
-    }
+    case 'add':
+      return withFiles(draft, action.files.map((file) => ({ file, name: stem(file.name) })));
+    case 'put-back':
+      return withFiles(draft, action.files);
     case 'drop':
       return { ...draft, files: draft.files.filter((entry) => entry.key !== action.key) };
     case 'rename':

@@ -55,7 +55,7 @@ export async function sendDraft(): Promise<void> {
   changeDraft({ type: 'clear' });
   const made = await Promise.all(files.map(({ file, name }) => send({ file, name: name.trim() || file.name, params })));
   const refused = files.filter((_, index) => made[index] === null);
-  changeDraft({ type: 'add', files: refused.map(({ file }) => file) });
+  changeDraft({ type: 'put-back', files: refused });
   const only = made[0];
   if (made.length === 1 && only) go({ page: 'job', id: only.id });
 }

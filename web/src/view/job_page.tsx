@@ -1,13 +1,13 @@
 // One job: how its computation goes, what came of it, and cutting it.
 
-import { useEffect } from 'preact/hooks';
+import { useEffect, useMemo } from 'preact/hooks';
 
 import { getJob, packageUrl, removeJob } from '../api/client.ts';
 import type { Job } from '../api/types.ts';
 import { bytes, count, duration } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
 import { currentCut } from '../state/feed.ts';
-import { jobPackage, loadPackage } from '../state/package_store.ts';
+import { jobPackage, type JobPackage, loadPackage } from '../state/package_store.ts';
 import { attempt, feed, go, loadMaterials, receive } from '../state/store.ts';
 import { AskButton, Chip } from './controls.tsx';
 import { CutPanel } from './cut_panel.tsx';
@@ -101,6 +101,16 @@ function Failure(props: { readonly job: Job }) {
   );
 }
 
+function Figures(props: { readonly content: JobPackage }) {
+  const { job, figures, artifacts } = props.content;
+  return (
+    <>
+      <ReportPanel figures={figures} />
+      <FilesPanel job={job} artifacts={artifacts} />
+    </>
+  );
+}
+
 function Result(props: { readonly job: Job }) {
   const { job } = props;
   useEffect(() => {
@@ -110,6 +120,9 @@ function Result(props: { readonly job: Job }) {
   const cut = currentCut(feed.value, job.id);
   const now = jobPackage.value;
   const content = now.state === 'ready' && now.job === job.id ? now.content : null;
+  // Machines and cuts report several times a second; these panels depend on none of it.
+  const model = useMemo(() => content && <ModelPanel name={job.name} content={content} />, [job.name, content]);
+  const figures = useMemo(() => content && <Figures content={content} />, [content]);
   return (
     <>
       <CutPanel job={job} cut={cut} />
@@ -121,10 +134,9 @@ function Result(props: { readonly job: Job }) {
       {now.state === 'loading' && <p class="quiet empty">{t.files.loading}</p>}
       {content !== null && (
         <div class="result">
-          <ModelPanel name={job.name} content={content} />
+          {model}
           <SheetPanel job={job} content={content} cut={cut} />
-          <ReportPanel figures={content.figures} />
-          <FilesPanel job={job.id} artifacts={content.artifacts} />
+          {figures}
         </div>
       )}
     </>

@@ -39,7 +39,7 @@ function SendingRow(props: { readonly sending: Sending }) {
   return (
     <li class="job-row sending">
       <span class="job-name">{fault === null ? t.upload.sending(name) : t.upload.failed(name)}</span>
-      {fault === null ? <Bar fraction={fraction} label={t.upload.sending(name)} /> : <span class="fault">{fault}</span>}
+      {fault === null ? <Bar fraction={fraction} label={t.upload.sending(name)} /> : <span class="fault" role="alert">{fault}</span>}
       <button type="button" class="button small" onClick={() => forget(key)}>
         {fault === null ? t.upload.cancel : t.dismiss}
       </button>

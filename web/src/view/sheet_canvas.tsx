@@ -166,6 +166,9 @@ export function SheetCanvas(props: {
   useEffect(() => setView(fit(box)), [box]);
   const { svg, handlers } = useGestures(box, setView);
   const zoom = (factor: number): void => setView(zoomAt(view, box, centre(view), factor));
+  const labels = view.width < kReadableViewMm;
+  // Kept as it is while a cut's progress draws the rest several times a second.
+  const pieces = useMemo(() => <Pieces sheet={sheet} labels={labels} />, [sheet, labels]);
   const whole = view.width >= fit(box).width;
   return (
     <>
@@ -187,7 +190,7 @@ export function SheetCanvas(props: {
       >
         <rect class="paper" width={sheet.widthMm} height={sheet.heightMm} />
         <g transform={`translate(0 ${sheet.heightMm}) scale(1 -1)`}>
-          <Pieces sheet={sheet} labels={view.width < kReadableViewMm} />
+          {pieces}
           {burnt !== null && <Burn burnt={burnt} hot={hot} scale={view.width / 400} />}
         </g>
       </svg>
