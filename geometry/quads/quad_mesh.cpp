@@ -4,14 +4,19 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "geometry/closest_point.h"
 #include "geometry/quads/cell_regions.h"
 #include "geometry/quads/chart_sampler.h"
+#include "geometry/quads/curvature_spacing.h"
 #include "geometry/quads/grid.h"
 #include "geometry/quads/half_sag.h"
 #include "geometry/quads/quad_edges.h"
+#include "geometry/quads/quality.h"
 
 namespace leafcutter::geometry {
 
@@ -22,6 +27,9 @@ using Eigen::Vector3d;
 // A region whose triangles cancel to less than this share of its area has no clear direction.
 constexpr double kClearDirection = 0.2;
 
+// Graded grids may come this much less close on average, if the largest distance falls.
+constexpr double kWorseMean = 1.2;
+
 void refuse(const std::string& path, const std::string& what) {
     throw Error(ErrorKind::NotSupported, "not-supported-yet", path + ": " + what);
 }
@@ -31,9 +39,6 @@ void check_options(const Foliation& foliation, const GridOptions& options) {
         throw Error(
             ErrorKind::BadOption, "bad-strip-width",
             fmt::format("grid.strip_width_mm: must be > 0, not {}", options.strip_width_mm));
-    }
-    if (options.spacing != Spacing::Uniform) {
-        refuse("grid.spacing", "only uniform spacing is built yet; use \"uniform\"");
     }
     if (options.planar != Planarity::Off) {
         refuse("grid.planar", "planarisation is not built yet; use \"off\"");
@@ -166,6 +171,68 @@ void append(QuadMesh& mesh, const Patch& patch, const ChartGrid& grid, const Cel
     mesh.grids.push_back(grid.grid());
 }
 
+// One cylinder on its way to quads.
+struct Work {
+    std::size_t cylinder = 0;
+    const Cylinder& chart;
+    const ChartSampler& sampler;
+    double area = 0.0;
+};
+
+void add_cylinder(QuadMesh& mesh,
+                  const Work& work,
+                  const CylinderGrid& counts,
+                  const GridOptions& options,
+                  const Context& context) {
+    const ChartGrid grid(work.chart, counts);
+    Patch patch = sample_patch(grid, work.sampler, context);
+    check_topology(work.cylinder, grid, patch);
+    const CellRegions regions = cut_regions(work.chart, grid);
+    check_regions(work.cylinder, regions, work.area);
+    if (options.half_sag_offset) {
+        offset_by_half_sag(patch.vertices, sag_cells(patch, regions, grid, work.sampler));
+    }
+    check_facing(work.cylinder, patch, regions);
+    append(mesh, patch, grid, regions);
+}
+
+// The grid among `even` and its regraded copies that comes closest to the surface: the smallest
+// largest distance of those whose mean is not worse, else of those where it is little worse.
+CylinderGrid closest_grid(const Work& work,
+                          const CylinderGrid& even,
+                          const GridOptions& options,
+                          const Context& context) {
+    const ClosestPoint surface(work.chart.mesh);
+    const auto distance = [&](const CylinderGrid& grid) {
+        QuadMesh mesh;
+        add_cylinder(mesh, work, grid, options, context);
+        mesh.addresses.assign(mesh.quads.size(), {});
+        return measure_quality(mesh, surface, context).overall.surface_distance_percent;
+    };
+    struct Scored {
+        CylinderGrid grid;
+        MaxAvg distance;
+    };
+    std::vector<Scored> scored{{even, distance(even)}};
+    for (CylinderGrid& grid : curvature_grids(work.chart, even, work.sampler, options.spacing)) {
+        const MaxAvg found = distance(grid);
+        scored.push_back({std::move(grid), found});
+    }
+    for (const double allowed : {1.0, kWorseMean}) {
+        const double limit = allowed * scored.front().distance.avg;
+        const Scored* best = &scored.front();
+        for (const Scored& candidate : scored) {
+            if (candidate.distance.avg <= limit && candidate.distance.max < best->distance.max) {
+                best = &candidate;
+            }
+        }
+        if (best != &scored.front()) {
+            return best->grid;
+        }
+    }
+    return even;
+}
+
 }  // namespace
 
 QuadMesh build_quad_mesh(const Foliation& foliation,
@@ -175,20 +242,16 @@ QuadMesh build_quad_mesh(const Foliation& foliation,
     QuadMesh mesh;
     for (std::size_t i = 0; i < foliation.cylinders.size(); ++i) {
         const Cylinder& chart = foliation.cylinders[i];
-        const double area = surface_area(chart.mesh);
-        const ChartGrid grid(chart, choose_grid(chart, wish_for(i, area, options)));
         context.check();
         const ChartSampler sampler(chart);
+        const Work work{
+            .cylinder = i, .chart = chart, .sampler = sampler, .area = surface_area(chart.mesh)};
         context.check();
-        Patch patch = sample_patch(grid, sampler, context);
-        check_topology(i, grid, patch);
-        const CellRegions regions = cut_regions(chart, grid);
-        check_regions(i, regions, area);
-        if (options.half_sag_offset) {
-            offset_by_half_sag(patch.vertices, sag_cells(patch, regions, grid, sampler));
+        CylinderGrid grid = choose_grid(chart, wish_for(i, work.area, options));
+        if (options.spacing != Spacing::Uniform) {
+            grid = closest_grid(work, grid, options, context);
         }
-        check_facing(i, patch, regions);
-        append(mesh, patch, grid, regions);
+        add_cylinder(mesh, work, grid, options, context);
     }
     return mesh;
 }

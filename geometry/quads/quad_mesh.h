@@ -1,8 +1,8 @@
 // The quad mesh: where leaves of F and F* cross, at a wanted strip width.
 //
-// Corners a b c d of a quad: a→b and d→c run along leaves of F (g grows), a→d and b→c along leaves of
-// F* (f grows); counter-clockwise seen from outside. Rows run along F: row i lies between the f-levels
-// i and i+1; column j between the g-levels j and j+1.
+// Corners a b c d of a quad: a→b and d→c run along leaves of F (g grows), a→d and b→c along leaves
+// of F* (f grows); counter-clockwise seen from outside. Rows run along F: row i lies between the
+// f-levels i and i+1; column j between the g-levels j and j+1.
 
 #pragma once
 
@@ -18,6 +18,9 @@
 
 namespace leafcutter::geometry {
 
+// Uniform: strips as evenly wide on the surface as the leaves allow. Curvature: narrower where the
+// surface bends across them, on average over a leaf; CurvatureArea: on average over its area.
+// Graded grids are taken only where they lower the largest distance to the surface.
 enum class Spacing { Uniform, Curvature, CurvatureArea };
 enum class Junctions { Conforming, Independent };
 enum class Parity { Even, Any };
@@ -29,9 +32,9 @@ struct RowsCols {
 };
 
 struct GridOptions {
-    double strip_width_mm = 10.0;         // Mean width of strips: cells = area / width².
-    RowsCols all;                         // Fixed counts for every cylinder, instead of the width.
-    std::vector<RowsCols> per_cylinder;   // Stronger than `all`; may be shorter than the cylinders.
+    double strip_width_mm = 10.0;        // Mean width of strips: cells = area / width².
+    RowsCols all;                        // Fixed counts for every cylinder, instead of the width.
+    std::vector<RowsCols> per_cylinder;  // Stronger than `all`; may be shorter than the cylinders.
     Spacing spacing = Spacing::Uniform;
     Junctions junctions = Junctions::Conforming;
     Parity parity = Parity::Even;
@@ -51,11 +54,11 @@ struct CylinderGrid {
     ChartShape shape = ChartShape::Rectangle;
     int rows = 0;
     int cols = 0;
-    int column_shift = 0;  // Torus: row `rows` continues row 0 this many columns further on:
-                           // vertex (rows, j) is vertex (0, j - column_shift).
-    double shear_deg = 0.0;         // Angle by which the grid leaves orthogonality; 0 unless a torus.
-    std::vector<double> f_levels;   // rows + 1
-    std::vector<double> g_levels;   // cols + 1
+    int column_shift = 0;    // Torus: row `rows` continues row 0 this many columns further on:
+                             // vertex (rows, j) is vertex (0, j - column_shift).
+    double shear_deg = 0.0;  // Angle by which the grid leaves orthogonality; 0 unless a torus.
+    std::vector<double> f_levels;  // rows + 1
+    std::vector<double> g_levels;  // cols + 1
 };
 
 struct QuadMesh {
@@ -70,8 +73,8 @@ struct QuadMesh {
 
 // Samples the foliation's charts. Vertices are shared inside a cylinder.
 //
-// Throws Error(BadOption) for an impossible count and Error(SelfCheck) where the grid is not manifold,
-// or a quad is inverted.
+// Throws Error(BadOption) for an impossible count and Error(SelfCheck) where the grid is not
+// manifold, or a quad is inverted.
 QuadMesh build_quad_mesh(const Foliation& foliation,
                          const GridOptions& options = {},
                          const Context& context = {});

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,6 +10,7 @@
 #include "geometry/closest_point.h"
 #include "geometry/quads/quad_edges.h"
 #include "geometry/quads/quad_mesh.h"
+#include "geometry/quads/quality.h"
 #include "tests/geometry/charts.h"
 
 namespace leafcutter::geometry {
@@ -328,6 +330,49 @@ TEST(QuadMesh, KeepsSeveralCylindersApart) {
     EXPECT_EQ(euler(mesh), 1 + 0);
     EXPECT_EQ(mesh.addresses.front().cylinder, 0);
     EXPECT_EQ(mesh.addresses.back().cylinder, 1);
+}
+
+// 100 mm of flat sheet, then 100 mm rolled up to a radius of 40 mm. Isometric to its chart.
+Foliation rolled_sheet() {
+    return testing::one_cylinder(testing::make_chart(
+        {.shape = ChartShape::Rectangle,
+         .across = 400,
+         .along = 10,
+         .width = 200.0,
+         .height = 100.0,
+         .position = [](double u, double v) {
+             const double arc = std::max(200.0 * u - 100.0, 0.0) / 40.0;
+             const double flat = std::min(200.0 * u, 100.0);
+             return Vector3d(flat + 40.0 * std::sin(arc), 100.0 * v, 40.0 * (1.0 - std::cos(arc)));
+         }}));
+}
+
+TEST(QuadMesh, NarrowsStripsWhereTheSurfaceBendsIfAsked) {
+    const Foliation sheet = rolled_sheet();
+    const ClosestPoint surface(sheet.cylinders[0].mesh);
+    const double even = measure_quality(build_quad_mesh(sheet, counts(10, 20)), surface)
+                            .overall.surface_distance_percent.max;
+    for (const Spacing spacing : {Spacing::Curvature, Spacing::CurvatureArea}) {
+        GridOptions options = counts(10, 20);
+        options.spacing = spacing;
+        const QuadMesh mesh = build_quad_mesh(sheet, options);
+        const auto& levels = mesh.grids[0].g_levels;
+        EXPECT_GT(levels[1] - levels[0], 1.5 * (levels[20] - levels[19]));
+        EXPECT_TRUE(std::is_sorted(levels.begin(), levels.end()));
+        const MaxAvg found = measure_quality(mesh, surface).overall.surface_distance_percent;
+        EXPECT_LT(found.max, 0.8 * even);
+        // Along the other family nothing bends, so nothing moves.
+        EXPECT_NEAR(mesh.grids[0].f_levels[1], 10.0, 1e-9);
+    }
+}
+
+TEST(QuadMesh, KeepsEvenLevelsWhereNothingBends) {
+    GridOptions options = counts(5, 7);
+    options.spacing = Spacing::Curvature;
+    const QuadMesh mesh = build_quad_mesh(testing::flat_rectangle(70.0, 50.0), options);
+    for (std::size_t i = 0; i < 8; ++i) {
+        EXPECT_NEAR(mesh.grids[0].g_levels[i], 10.0 * static_cast<double>(i), 1e-9);
+    }
 }
 
 TEST(QuadMesh, StopsWhenAsked) {
