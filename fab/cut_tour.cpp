@@ -23,7 +23,8 @@ public:
     std::vector<TourStop> find() {
         nearest_neighbour();
         choose_starts();
-        constexpr int kRounds = 4;
+        find_neighbours();
+        constexpr int kRounds = 8;
         for (int round = 0; round < kRounds; ++round) {
             const double before = length();
             improve_order();
@@ -107,22 +108,26 @@ private:
         }
     }
 
+    // Stops near any start of each stop, whatever starts are chosen now.
     void find_neighbours() {
         std::vector<Eigen::Vector2d> points;
-        for (std::size_t i = 0; i < tour_.size(); ++i) {
-            points.push_back(at(i).entry);
-            points.push_back(at(i).exit);
+        std::vector<std::size_t> owner;
+        for (std::size_t stop = 0; stop < stops_.size(); ++stop) {
+            for (const TourStart& start : stops_[stop]) {
+                points.push_back(start.entry);
+                owner.push_back(stop);
+            }
         }
         const PointGrid grid(points);
-        constexpr std::size_t kNear = 10;
+        constexpr std::size_t kNear = 6;
+        constexpr std::size_t kMost = 24;
         neighbours_.assign(stops_.size(), {});
         for (std::size_t i = 0; i < points.size(); ++i) {
-            std::vector<std::size_t>& near = neighbours_[tour_[i / 2].stop];
-            for (const std::size_t other : grid.nearest(points[i], kNear)) {
-                const std::size_t stop = tour_[other / 2].stop;
-                if (stop != tour_[i / 2].stop &&
-                    std::find(near.begin(), near.end(), stop) == near.end()) {
-                    near.push_back(stop);
+            std::vector<std::size_t>& near = neighbours_[owner[i]];
+            for (const std::size_t other : grid.nearest_others(i, owner, kNear)) {
+                if (near.size() < kMost &&
+                    std::find(near.begin(), near.end(), owner[other]) == near.end()) {
+                    near.push_back(owner[other]);
                 }
             }
         }
@@ -135,7 +140,6 @@ private:
     }
 
     void improve_order() {
-        find_neighbours();
         position_.resize(stops_.size());
         if (tour_.empty()) {
             return;
@@ -149,6 +153,7 @@ private:
                 for (const std::size_t other : neighbours_[stop]) {
                     better |= try_reversal(position_[stop], position_[other]);
                     better |= try_moves(stop, other);
+                    better |= try_new_start(stop, other);
                 }
             }
             if (!better) {
@@ -227,6 +232,48 @@ private:
         if (backward < forward) {
             reverse(first, last);
         }
+        shift(first, last, target);
+        return true;
+    }
+
+    // A closed stop goes between `other` and its successor and starts where that is shortest.
+    bool try_new_start(std::size_t stop, std::size_t other) {
+        const std::vector<TourStart>& starts = stops_[stop];
+        const std::size_t from = position_[stop];
+        const std::size_t target = position_[other];
+        if (starts.size() <= 2 || target + 1 == from) {
+            return false;
+        }
+        const bool at_end = from + 1 == tour_.size();
+        const bool onto_end = target + 1 == tour_.size();
+        const Eigen::Vector2d& before = at(target).exit;
+        const Eigen::Vector2d& after = onto_end ? before : at(target + 1).entry;
+        double gain = (at(from).entry - exit_before(from)).norm();
+        if (!at_end) {
+            gain += (at(from + 1).entry - at(from).exit).norm() -
+                    (at(from + 1).entry - exit_before(from)).norm();
+        }
+        gain += (after - before).norm();
+        double least = gain - kGainMm;
+        std::size_t best = starts.size();
+        for (std::size_t i = 0; i < starts.size(); ++i) {
+            const double way = (starts[i].entry - before).norm() +
+                               (onto_end ? 0.0 : (after - starts[i].exit).norm());
+            if (way < least) {
+                least = way;
+                best = i;
+            }
+        }
+        if (best == starts.size()) {
+            return false;
+        }
+        tour_[from].start = best;
+        shift(from, from, target);
+        return true;
+    }
+
+    // Moves tour_[first..last] to just after `target`, which is not among them.
+    void shift(std::size_t first, std::size_t last, std::size_t target) {
         const auto begin = tour_.begin();
         const auto offset = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
         if (target > last) {
@@ -238,7 +285,6 @@ private:
                         begin + offset(last) + 1);
             number_positions(target + 1, last);
         }
-        return true;
     }
 
     const Stops& stops_;

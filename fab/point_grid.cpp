@@ -55,22 +55,28 @@ std::size_t PointGrid::nearest(const Eigen::Vector2d& to) const {
     return nearest(to, 1).front();
 }
 
+void PointGrid::collect_ring(int x0, int y0, int ring, std::vector<std::size_t>& out) const {
+    for (int y = std::max(0, y0 - ring); y <= std::min(rows_ - 1, y0 + ring); ++y) {
+        const bool whole_row = std::abs(y - y0) == ring;
+        for (int x = x0 - ring; x <= x0 + ring; x += whole_row ? 1 : 2 * ring) {
+            if (x >= 0 && x < columns_) {
+                out.insert(out.end(), cell(x, y).begin(), cell(x, y).end());
+            }
+        }
+    }
+}
+
 std::vector<std::size_t> PointGrid::nearest(const Eigen::Vector2d& to, std::size_t count) const {
     std::vector<std::pair<double, std::size_t>> found;
     const int x0 = column(to.x());
     const int y0 = row(to.y());
     const int most = std::max(columns_, rows_);
+    std::vector<std::size_t> ring_points;
     for (int ring = 0; ring <= most; ++ring) {
-        for (int y = std::max(0, y0 - ring); y <= std::min(rows_ - 1, y0 + ring); ++y) {
-            const bool whole_row = std::abs(y - y0) == ring;
-            for (int x = x0 - ring; x <= x0 + ring; x += whole_row || ring == 0 ? 1 : 2 * ring) {
-                if (x < 0 || x >= columns_) {
-                    continue;
-                }
-                for (const std::size_t point : cell(x, y)) {
-                    found.emplace_back((points_[point] - to).squaredNorm(), point);
-                }
-            }
+        ring_points.clear();
+        collect_ring(x0, y0, ring, ring_points);
+        for (const std::size_t point : ring_points) {
+            found.emplace_back((points_[point] - to).squaredNorm(), point);
         }
         // Whatever lies in rings further out is at least this far from a point within the grid.
         const double reach = ring * cell_mm_;
@@ -82,6 +88,43 @@ std::vector<std::size_t> PointGrid::nearest(const Eigen::Vector2d& to, std::size
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < std::min(count, found.size()); ++i) {
         out.push_back(found[i].second);
+    }
+    return out;
+}
+
+std::vector<std::size_t> PointGrid::nearest_others(std::size_t point,
+                                                   const std::vector<std::size_t>& owner,
+                                                   std::size_t count) const {
+    const Eigen::Vector2d& at = points_[point];
+    const int x0 = column(at.x());
+    const int y0 = row(at.y());
+    const int most = std::max(columns_, rows_);
+    std::vector<std::pair<double, std::size_t>> found;
+    std::vector<std::size_t> ring_points;
+    std::vector<std::size_t> out;
+    for (int ring = 0; ring <= most; ++ring) {
+        ring_points.clear();
+        collect_ring(x0, y0, ring, ring_points);
+        for (const std::size_t other : ring_points) {
+            if (owner[other] != owner[point]) {
+                found.emplace_back((points_[other] - at).squaredNorm(), other);
+            }
+        }
+        std::sort(found.begin(), found.end());
+        const double reach = ring * cell_mm_;
+        out.clear();
+        std::vector<std::size_t> owners;
+        for (const auto& [square, other] : found) {
+            const bool sure = square <= reach * reach || ring == most;
+            if (sure && out.size() < count &&
+                std::find(owners.begin(), owners.end(), owner[other]) == owners.end()) {
+                owners.push_back(owner[other]);
+                out.push_back(other);
+            }
+        }
+        if (out.size() == count) {
+            break;
+        }
     }
     return out;
 }

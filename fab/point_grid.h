@@ -21,7 +21,14 @@ public:
     // Up to `count` nearest points, nearest first.
     std::vector<std::size_t> nearest(const Eigen::Vector2d& to, std::size_t count) const;
 
+    // Up to `count` points nearest to `point` whose owner is another, one per owner, nearest first.
+    std::vector<std::size_t> nearest_others(std::size_t point,
+                                            const std::vector<std::size_t>& owner,
+                                            std::size_t count) const;
+
 private:
+    // Points in the cells of one square ring round a cell.
+    void collect_ring(int x0, int y0, int ring, std::vector<std::size_t>& out) const;
     const std::vector<std::size_t>& cell(int x, int y) const;
     int column(double x) const;
     int row(double y) const;

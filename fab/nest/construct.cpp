@@ -24,6 +24,10 @@ constexpr double kRasterSlack = 0.35;
 // Kept above the wanted gap: numbers are rounded on their way into files.
 constexpr double kGapGuardMm = 2e-4;
 
+// What making a stencil costs, in rows of positions tried.
+constexpr std::int64_t kStencilRows = 30;
+constexpr std::int64_t kExactRows = 30;  // And an exact test.
+
 struct OpenSheet {
     SheetRaster raster;
     PlacedOutlines outlines;
@@ -190,10 +194,11 @@ private:
             return;
         }
         turned->stencil = make_stencil(turned->ring, h);
+        heap_.evaluations += kStencilRows;
         const Eigen::Vector2d play = (options_.extent - turned->size) / h;
         const int last_row = static_cast<int>(play.y());
         const int last_column = static_cast<int>(play.x());
-        int tries_left = 24;
+        int tries_left = 8;
         for (int row = 0; row <= last_row && tries_left > 0; ++row) {
             if (best && base + row * h >= best->score) {
                 return;
@@ -240,13 +245,14 @@ private:
     // The raster is coarse: a collision by less than a cell is cured by a small step.
     std::optional<Eigen::Vector2d> nudge_free(const OpenSheet& sheet,
                                               const Turned& turned,
-                                              const Eigen::Vector2d& corner) const {
-        static constexpr std::array<std::array<double, 2>, 5> kSteps{
-            {{0.0, 0.0}, {0.0, 0.6}, {0.6, 0.3}, {-0.6, 0.3}, {0.0, 1.2}}};
+                                              const Eigen::Vector2d& corner) {
+        static constexpr std::array<std::array<double, 2>, 4> kSteps{
+            {{0.0, 0.0}, {0.0, 0.5}, {0.5, 0.0}, {0.0, 1.0}}};
         const Eigen::Vector2d play = options_.extent - turned.size;
         for (const auto& step : kSteps) {
             Eigen::Vector2d at = corner + options_.cell_mm * Eigen::Vector2d(step[0], step[1]);
             at = at.cwiseMax(Eigen::Vector2d::Zero()).cwiseMin(play);
+            heap_.evaluations += kExactRows;
             if (!sheet.outlines.collides(turned.ring, at, gap_)) {
                 return at;
             }

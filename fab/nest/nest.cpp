@@ -100,8 +100,14 @@ public:
 
     Best run() {
         constexpr std::array<double, 3> kTopWeights{0.0, 0.5, 0.25};
+        constexpr std::size_t kMostRounds = 64;
+        // One shape has nothing to be ordered against: each way of gravity is tried once.
+        const std::size_t rounds = shapes_.size() == 1 ? 2 : kMostRounds;
         std::int64_t spent = 0;
-        for (std::size_t round = 0; round == 0 || spent < options_.max_evaluations; ++round) {
+        for (std::size_t round = 0; round < rounds; ++round) {
+            if (round > 0 && spent >= options_.max_evaluations) {
+                break;
+            }
             const double noise = round < 2 ? 0.0 : 0.04 * static_cast<double>(1 + round % 4);
             const std::vector<std::size_t> order = order_of(shapes_, noise, random_);
             const double weight = kTopWeights[(round / 2) % kTopWeights.size()];

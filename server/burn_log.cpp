@@ -1,0 +1,55 @@
+#include "server/burn_log.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+
+namespace leafcutter::server {
+
+std::vector<fab::BurntSegment> read_burn_log(std::string_view text) {
+    std::vector<fab::BurntSegment> burnt;
+    int number = 0;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        ++number;
+        if (line.find_first_not_of(" \t\r") == std::string_view::npos) {
+            continue;
+        }
+        try {
+            const auto record = nlohmann::json::parse(line);
+            if (record.at("s").get<double>() > 0.0) {
+                burnt.push_back({{record.at("x0").get<double>(), record.at("y0").get<double>()},
+                                 {record.at("x1").get<double>(), record.at("y1").get<double>()}});
+            }
+        } catch (const nlohmann::json::exception& error) {
+            throw geometry::Error(geometry::ErrorKind::BadFile, "bad-burn-log",
+                                  fmt::format("burn log, line {}: {}", number, error.what()));
+        }
+    }
+    return burnt;
+}
+
+std::vector<std::vector<fab::BurntSegment>> part_by_sheet(std::span<const fab::BurntSegment> burnt,
+                                                          std::span<const fab::CutProgram> plans) {
+    std::vector<std::vector<fab::BurntSegment>> parts(plans.size());
+    std::size_t part = 0;
+    double done_mm = 0.0;
+    for (const fab::BurntSegment& segment : burnt) {
+        const double length_mm = (segment.to - segment.from).norm();
+        while (part + 1 < plans.size() && done_mm + length_mm / 2.0 > plans[part].burn_mm) {
+            done_mm = std::max(0.0, done_mm - plans[part].burn_mm);
+            ++part;
+        }
+        parts[part].push_back(segment);
+        done_mm += length_mm;
+    }
+    return parts;
+}
+
+}  // namespace leafcutter::server

@@ -1,0 +1,169 @@
+#include <algorithm>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fab/audit.h"
+#include "fab/export/formats.h"
+#include "geometry/error.h"
+
+namespace leafcutter::fab {
+namespace {
+
+CutProgram sample_program() {
+    CutProgram program;
+    program.job = "Héllo (my) job! ~?\nM3 S1000";
+    program.sheet = 2;
+    program.material = "paper-160-blue";
+    program.size = {600.0, 400.0};
+    program.cut = {40.0, 900.0, 2};
+    program.score = {12.5, 1500.0, 1};
+    program.engrave = {10.0, 2400.0, 1};
+    program.estimated_s = 754.2;
+    program.paths = {
+        {Operation::Engrave, {{10.0, 10.0}, {10.0, 14.0}, {12.0, 14.00049}}, "W1.1"},
+        {Operation::Score, {{20.0, 5.0}, {20.0, 15.0}}, "W1.1"},
+        {Operation::Cut, {{5.0, 5.0}, {60.12345, 5.0}, {60.0, 15.0}, {5.0, 5.0}}, "W1.1"},
+        {Operation::Cut, {{100.0, 5.0}, {160.0, 5.0}, {160.0, 15.0}, {100.0, 5.0}}, "P2.1"}};
+    return program;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) {
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+std::string gcode(Dialect dialect = Dialect::Grbl) {
+    return write_gcode(sample_program(), {}, dialect);
+}
+
+TEST(Gcode, HeaderNamesTheJobInHarmlessLettersOnly) {
+    const std::vector<std::string> lines = lines_of(gcode());
+    EXPECT_EQ(lines[1], "; job: H_llo _my_ job_ _M3 S1000");
+    EXPECT_EQ(lines[2], "; sheet: 2, 600 x 400 mm");
+    EXPECT_EQ(lines[3], "; material: paper-160-blue");
+    EXPECT_EQ(lines[4], "; estimated time: 0:12:34, 754 s");
+}
+
+TEST(Gcode, HoldsNoLineOverEightyCharactersAndNothingButAscii) {
+    CutProgram program = sample_program();
+    program.job = std::string(500, 'x');
+    for (const std::string& line : lines_of(write_gcode(program, {}, Dialect::Grbl))) {
+        EXPECT_LE(line.size(), 80U);
+        EXPECT_TRUE(std::all_of(line.begin(), line.end(), [](char c) {
+            return c >= ' ' && c <= '}' && c != '!' && c != '?';
+        })) << line;
+    }
+}
+
+TEST(Gcode, StartsInMillimetresAndEndsDarkAndParked) {
+    const std::vector<std::string> lines = lines_of(gcode());
+    ASSERT_GT(lines.size(), 12U);
+    EXPECT_EQ(lines[5], "G21");
+    EXPECT_EQ(lines[6], "G90");
+    EXPECT_EQ(lines[8], "M4 S0");
+    EXPECT_EQ(lines[lines.size() - 2], "M5 S0");
+    EXPECT_EQ(lines.back(), "G0 X0 Y0");
+}
+
+class GcodeDialects : public testing::TestWithParam<Dialect> {};
+
+TEST_P(GcodeDialects, ArePlainMotionLinesWithTheLaserOnInG1Only) {
+    const std::regex rapid(R"(G0 X-?\d+(\.\d{1,3})? Y-?\d+(\.\d{1,3})?( S0)?)");
+    const std::regex burn(
+        R"(G1 X-?\d+(\.\d{1,3})? Y-?\d+(\.\d{1,3})?( S\d+(\.\d{1,3})?)?( F\d+)?)");
+    bool powered = false;
+    for (const std::string& line : lines_of(gcode(GetParam()))) {
+        if (line.rfind("G0", 0) == 0) {
+            EXPECT_TRUE(std::regex_match(line, rapid)) << line;
+            powered = false;
+        } else if (line.rfind("G1", 0) == 0) {
+            EXPECT_TRUE(std::regex_match(line, burn)) << line;
+            powered |= line.find('S') != std::string::npos;
+            EXPECT_TRUE(powered) << "power after a rapid must be named anew: " << line;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         GcodeDialects,
+                         testing::Values(Dialect::Grbl, Dialect::Marlin, Dialect::Smoothie));
+
+TEST(Gcode, ScalesPowerToTheMachine) {
+    MachineProfile machine;
+    machine.s_max = 255.0;
+    const std::string text = write_gcode(sample_program(), machine, Dialect::Marlin);
+    EXPECT_NE(text.find(" S102 F900\n"), std::string::npos) << "cut: 40 % of 255";
+    EXPECT_NE(text.find(" S31.875 F1500\n"), std::string::npos) << "score: 12.5 %";
+    EXPECT_NE(text.find("M4 I1 S0\n"), std::string::npos);
+}
+
+TEST(Gcode, RepeatsACutForEveryPass) {
+    const std::string text = gcode();
+    const std::string corner = "G1 X60 Y15\n";
+    const std::size_t first = text.find(corner);
+    ASSERT_NE(first, std::string::npos);
+    EXPECT_NE(text.find(corner, first + 1), std::string::npos);
+    EXPECT_EQ(text.find("G0", first), text.rfind("G0", text.find("X100 Y5", first)))
+        << "no rapid between the passes of a closed contour";
+}
+
+TEST(Gcode, RefusesToBurnWithoutAFeed) {
+    CutProgram program = sample_program();
+    program.score.feed_mm_per_min = 0.0;
+    EXPECT_THROW(write_gcode(program, {}, Dialect::Grbl), geometry::Error);
+}
+
+TEST(Gcode, ReadsBackAsWhatWasPlanned) {
+    const BurnAudit audit = audit_burn(sample_program(), burnt_segments(gcode()));
+    EXPECT_LT(audit.largest_deviation_mm, 1e-3);
+    EXPECT_LT(audit.largest_gap_mm, 1e-3);
+    EXPECT_NEAR(audit.burnt_mm, audit.planned_mm, 0.01);
+}
+
+TEST(Svg, IsTrueToSizeWithOneGroupPerOperationAndPiecesNamed) {
+    CutProgram program = sample_program();
+    program.job = "<job> & \"co\"";
+    const std::string svg = write_svg(program);
+    EXPECT_NE(svg.find("width=\"600mm\" height=\"400mm\" viewBox=\"0 0 600 400\""),
+              std::string::npos);
+    EXPECT_NE(svg.find("<title>&lt;job&gt; &amp; &quot;co&quot;, sheet 2"), std::string::npos);
+    EXPECT_LT(svg.find("id=\"engrave\""), svg.find("id=\"score\""));
+    EXPECT_LT(svg.find("id=\"score\""), svg.find("id=\"cut\""));
+    EXPECT_NE(svg.find("data-piece=\"P2.1\" d=\"M100,395 160,395 160,385Z\""), std::string::npos);
+    EXPECT_NE(svg.find("data-piece=\"W1.1\" d=\"M20,395 20,385\"/>"), std::string::npos);
+}
+
+TEST(Dxf, HasALayerPerOperationAndClosedPolylines) {
+    const std::string dxf = write_dxf(sample_program());
+    const std::vector<std::string> lines = lines_of(dxf);
+    EXPECT_EQ(lines.size() % 2, 0U) << "codes and values alternate";
+    EXPECT_EQ(lines.back(), "EOF");
+    int closed = 0;
+    int open = 0;
+    int vertices = 0;
+    for (std::size_t i = 0; i + 1 < lines.size(); i += 2) {
+        if (lines[i] == "0" && lines[i + 1] == "VERTEX") {
+            ++vertices;
+        }
+        if (lines[i] == "0" && lines[i + 1] == "POLYLINE") {
+            // 0 POLYLINE, 8 layer, 66, 10, 20, 30, 70 flag.
+            EXPECT_EQ(lines[i + 12], "70");
+            (lines[i + 13] == "1" ? closed : open) += 1;
+            EXPECT_EQ(lines[i + 3] == "CUT", lines[i + 13] == "1");
+        }
+    }
+    EXPECT_EQ(closed, 2);
+    EXPECT_EQ(open, 2);
+    EXPECT_EQ(vertices, 3 + 2 + 3 + 3);
+}
+
+}  // namespace
+}  // namespace leafcutter::fab
