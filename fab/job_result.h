@@ -1,0 +1,65 @@
+// Everything that a job computed, as values: what the writers of the package's files read.
+
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fab/cut_program.h"
+#include "fab/job_params.h"
+#include "fab/layout.h"
+#include "fab/material.h"
+#include "fab/strip.h"
+#include "fab/weave.h"
+#include "geometry/foliation.h"
+#include "geometry/leaves.h"
+#include "geometry/quads/quality.h"
+#include "geometry/repair.h"
+#include "geometry/topology.h"
+
+namespace leafcutter::fab {
+
+struct InputFacts {
+    std::string file;  // Valid UTF-8.
+    std::size_t vertices = 0;
+    std::size_t faces = 0;
+    double scale = 1.0;  // The factor applied to its coordinates.
+};
+
+// How truly the cut pieces give the surface back; see certificate.h.
+struct Certificate {
+    double largest_deviation_relative = 0.0;
+    double largest_deviation_mm = 0.0;
+    double largest_burn_deviation_mm = 0.0;  // Of any burnt point from the nearest planned path.
+    double largest_burn_gap_mm = 0.0;        // Of any planned point from the nearest burn.
+    int edges_compared = 0;
+};
+
+struct JobResult {
+    JobParams params;
+    InputFacts input;
+    geometry::RepairReport repair;
+    geometry::Topology topology;
+    geometry::Foliation foliation;
+    geometry::QuadMesh quads;
+    geometry::QualityReport quality;
+    double surface_area_mm2 = 0.0;
+    std::vector<geometry::Leaf> leaves;
+    std::vector<Strip> strips;
+    std::vector<Piece> pieces;
+    Weave weave;
+    Material weft;
+    Material warp;
+    Layout layout;
+    std::vector<CutProgram> programs;  // One for each sheet of the layout, same order.
+    Certificate certificate;
+    std::vector<std::pair<std::string, double>> timings_s;
+    std::vector<std::string> warnings;
+
+    const Material& material_of(Family family) const {
+        return family == Family::Weft ? weft : warp;
+    }
+};
+
+}  // namespace leafcutter::fab

@@ -1,0 +1,253 @@
+// report.json: what was computed and how good it is.
+
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "fab/package_files.h"
+#include "fab/totals.h"
+#include "geometry/error.h"
+
+namespace leafcutter::fab {
+
+namespace {
+
+using json = nlohmann::ordered_json;
+using geometry::FoliationMode;
+
+const char* name_of(FoliationMode mode) {
+    switch (mode) {
+        case FoliationMode::Auto:
+            return "auto";
+        case FoliationMode::Pants:
+            return "pants";
+        case FoliationMode::OneForm:
+            return "one-form";
+        case FoliationMode::Disk:
+            return "disk";
+        case FoliationMode::Annulus:
+            return "annulus";
+        case FoliationMode::Torus:
+            return "torus";
+        case FoliationMode::SpherePolar:
+            return "sphere-polar";
+        case FoliationMode::SpherePillowcase:
+            return "sphere-pillowcase";
+    }
+    return "auto";
+}
+
+const char* name_of(geometry::ChartShape shape) {
+    switch (shape) {
+        case geometry::ChartShape::Rectangle:
+            return "rectangle";
+        case geometry::ChartShape::Annulus:
+            return "annulus";
+        case geometry::ChartShape::Torus:
+            break;
+    }
+    return "torus";
+}
+
+json input_json(const InputFacts& input) {
+    return {{"file", input.file},
+            {"vertices", input.vertices},
+            {"faces", input.faces},
+            {"scale", input.scale}};
+}
+
+json surface_json(const JobResult& job) {
+    const geometry::RepairReport& repair = job.repair;
+    return {{"repairs",
+             {{"triangulated_polygons", repair.triangulated_polygons},
+              {"welded_vertices", repair.welded_vertices},
+              {"degenerate_faces_dropped", repair.degenerate_faces_dropped},
+              {"duplicate_faces_dropped", repair.duplicate_faces_dropped},
+              {"unused_vertices_dropped", repair.unused_vertices_dropped},
+              {"faces_reoriented", repair.faces_reoriented},
+              {"split_vertices", repair.split_vertices}}},
+            {"refinement", {{"vertices", job.topology.vertices}, {"faces", job.topology.faces}}},
+            {"area_mm2", job.surface_area_mm2},
+            {"removed_area_percent", job.quality.removed_area_percent}};
+}
+
+json topology_json(const geometry::Topology& topology) {
+    return {{"components", topology.components},
+            {"genus", topology.genus},
+            {"boundary_loops", topology.boundary_loops.size()},
+            {"euler", topology.euler}};
+}
+
+json cylinder_json(const geometry::Cylinder& cylinder, const geometry::CylinderGrid& grid) {
+    return {{"shape", name_of(cylinder.shape)},
+            {"graph_edge", cylinder.graph_edge},
+            {"height", cylinder.height},
+            {"circumference", cylinder.width},
+            {"modulus", cylinder.height / cylinder.width},
+            {"shear", cylinder.shear},
+            {"rows", grid.rows},
+            {"cols", grid.cols},
+            {"column_shift", grid.column_shift},
+            {"shear_deg", grid.shear_deg},
+            {"energy", cylinder.energy},
+            {"conformal_gap", cylinder.conformal_gap}};
+}
+
+json foliation_json(const JobResult& job) {
+    const geometry::Foliation& foliation = job.foliation;
+    json edges = json::array();
+    json weights = json::array();
+    for (const auto& edge : foliation.graph.edges) {
+        edges.push_back({{"from", edge.from}, {"to", edge.to}, {"weight", edge.weight}});
+        weights.push_back(edge.weight);
+    }
+    json cylinders = json::array();
+    for (std::size_t i = 0; i < foliation.cylinders.size(); ++i) {
+        cylinders.push_back(cylinder_json(foliation.cylinders[i], job.quads.grids[i]));
+    }
+    json singularities = json::array();
+    for (const auto& [position, prongs] : foliation.singularities) {
+        singularities.push_back(
+            {{"position", {position.x(), position.y(), position.z()}}, {"prongs", prongs}});
+    }
+    return {{"mode", name_of(foliation.mode)},
+            {"graph", {{"nodes", foliation.graph.nodes}, {"edges", std::move(edges)}}},
+            {"weights", std::move(weights)},
+            {"energy", foliation.energy},
+            {"iterations", foliation.iterations},
+            {"singularities", std::move(singularities)},
+            {"cylinders", std::move(cylinders)}};
+}
+
+json max_avg(const geometry::MaxAvg& value) {
+    return {{"max", value.max}, {"avg", value.avg}};
+}
+
+json quality_json(const geometry::Quality& quality) {
+    return {{"quads", quality.quads},
+            {"angle_deviation_deg", max_avg(quality.angle_deviation_deg)},
+            {"angle_deviation_bound_deg", {{"avg", quality.angle_deviation_bound_deg}}},
+            {"crossing_angle_deviation_deg", max_avg(quality.crossing_angle_deviation_deg)},
+            {"surface_distance_percent", max_avg(quality.surface_distance_percent)},
+            {"area_distortion_percent", {{"avg", quality.area_distortion_percent}}},
+            {"planarity_percent", max_avg(quality.planarity_percent)},
+            {"cell_area_variation", quality.cell_area_variation},
+            {"largest_cell_edge", quality.largest_cell_edge}};
+}
+
+json qualities_json(const geometry::QualityReport& report) {
+    json cylinders = json::array();
+    for (std::size_t i = 0; i < report.per_cylinder.size(); ++i) {
+        json cylinder = quality_json(report.per_cylinder[i]);
+        cylinder["cylinder"] = i;
+        cylinders.push_back(std::move(cylinder));
+    }
+    return {{"overall", quality_json(report.overall)}, {"cylinders", std::move(cylinders)}};
+}
+
+json family_json(const JobResult& job, Family family) {
+    const FamilyTotals totals = total_of(job, family);
+    return {{"material", job.material_of(family).id},
+            {"strips", totals.strips},
+            {"closed", totals.closed},
+            {"pieces", totals.pieces},
+            {"length_mm", totals.length_mm},
+            {"area_mm2", totals.area_mm2},
+            {"weight_g", totals.weight_g}};
+}
+
+json strips_summary_json(const JobResult& job) {
+    const json weft = family_json(job, Family::Weft);
+    const json warp = family_json(job, Family::Warp);
+    const double weight = weft["weight_g"].get<double>() + warp["weight_g"].get<double>();
+    return {{"count", job.strips.size()},
+            {"pieces", job.pieces.size()},
+            {"weft", weft},
+            {"warp", warp},
+            {"weight_g", weight},
+            {"weave_seams", job.weave.seams.size()}};
+}
+
+json nesting_json(const Layout& layout) {
+    return {{"density_percent", layout.density_percent},
+            {"sheets", layout.sheets.size()},
+            {"smallest_gap_mm", layout.smallest_gap_mm},
+            {"unplaced", layout.unplaced.size()}};
+}
+
+json cut_json(const JobResult& job) {
+    double burn = 0.0;
+    double travel = 0.0;
+    double seconds = 0.0;
+    json sheets = json::array();
+    for (const CutProgram& program : job.programs) {
+        burn += program.burn_mm;
+        travel += program.travel_mm;
+        seconds += program.estimated_s;
+        sheets.push_back({{"sheet", program.sheet},
+                          {"material", program.material},
+                          {"burn_mm", program.burn_mm},
+                          {"travel_mm", program.travel_mm},
+                          {"estimated_s", program.estimated_s}});
+    }
+    return {{"burn_mm", burn},
+            {"travel_mm", travel},
+            {"estimated_s", seconds},
+            {"sheets", std::move(sheets)}};
+}
+
+json certificate_json(const Certificate& certificate) {
+    return {{"largest_deviation_relative", certificate.largest_deviation_relative},
+            {"largest_deviation_mm", certificate.largest_deviation_mm},
+            {"edges_compared", certificate.edges_compared},
+            {"largest_burn_deviation_mm", certificate.largest_burn_deviation_mm},
+            {"largest_burn_gap_mm", certificate.largest_burn_gap_mm}};
+}
+
+// A number that is none is a mistake of ours; JSON would hide it as null.
+void check_finite(const json& value, const std::string& path) {
+    if (value.is_number_float() && !std::isfinite(value.get<double>())) {
+        throw geometry::Error(geometry::ErrorKind::SelfCheck, "report-not-finite",
+                              "report: " + path + " is not a finite number");
+    }
+    if (value.is_object()) {
+        for (const auto& item : value.items()) {
+            check_finite(item.value(), path + "." + item.key());
+        }
+    } else if (value.is_array()) {
+        for (std::size_t i = 0; i < value.size(); ++i) {
+            check_finite(value[i], fmt::format("{}[{}]", path, i));
+        }
+    }
+}
+
+}  // namespace
+
+std::string report_json(const JobResult& job) {
+    json timings = json::object();
+    for (const auto& [stage, seconds] : job.timings_s) {
+        timings[stage] = seconds;
+    }
+    json warnings = json::array();
+    for (const std::string& warning : job.warnings) {
+        warnings.push_back(warning);
+    }
+    const json file = {{"format", "leafcutter-report/1"},
+                       {"input", input_json(job.input)},
+                       {"surface", surface_json(job)},
+                       {"topology", topology_json(job.topology)},
+                       {"foliation", foliation_json(job)},
+                       {"quality", qualities_json(job.quality)},
+                       {"strips", strips_summary_json(job)},
+                       {"nesting", nesting_json(job.layout)},
+                       {"cut", cut_json(job)},
+                       {"timings_s", std::move(timings)},
+                       {"certificate", certificate_json(job.certificate)},
+                       {"warnings", std::move(warnings)}};
+    check_finite(file, "");
+    return file.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace leafcutter::fab

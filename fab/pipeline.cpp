@@ -1,0 +1,318 @@
+#include "fab/pipeline.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "fab/certificate.h"
+#include "fab/export/formats.h"
+#include "fab/family_nest.h"
+#include "fab/job_result.h"
+#include "fab/package_files.h"
+#include "fab/strips.h"
+#include "fab/toolpath.h"
+#include "fab/utf8.h"
+#include "fab/warnings.h"
+#include "fab/weave.h"
+#include "geometry/closest_point.h"
+#include "geometry/error.h"
+#include "geometry/foliation.h"
+#include "geometry/io/read_mesh.h"
+#include "geometry/leaves.h"
+#include "geometry/quads/quality.h"
+
+namespace leafcutter::fab {
+
+namespace {
+
+using geometry::Context;
+using geometry::Error;
+using geometry::ErrorKind;
+
+// Distant parts of a piece stay this much more than the kerf apart, so that the beam parts them.
+constexpr double kSelfGapMm = 0.3;
+
+// Leaves are for looking at: more than about this many points and every second one is left out.
+constexpr std::size_t kMostLeafCells = 60'000;
+
+// The stages and how much of the whole work each is, about.
+struct Stage {
+    const char* name;
+    double begin;
+    double end;
+};
+constexpr Stage kRead{"read", 0.0, 0.03};
+constexpr Stage kRepair{"repair", 0.03, 0.08};
+constexpr Stage kFoliation{"foliation", 0.08, 0.4};
+constexpr Stage kQuads{"quads", 0.4, 0.55};
+constexpr Stage kStrips{"strips", 0.55, 0.65};
+constexpr Stage kNest{"nest", 0.65, 0.85};
+constexpr Stage kToolpath{"toolpath", 0.85, 0.93};
+constexpr Stage kPackage{"package", 0.93, 1.0};
+
+[[noreturn]] void refuse(const char* code, const std::string& message) {
+    throw Error(ErrorKind::BadOption, code, message);
+}
+
+const Material& material_named(std::span<const Material> materials,
+                               const std::string& id,
+                               const char* path) {
+    const Material* material = find_material(materials, id);
+    if (material == nullptr) {
+        refuse("no-such-material",
+               fmt::format("{}: there is no material {}", path, valid_utf8(id)));
+    }
+    return *material;
+}
+
+// Runs the stages one after the other over one JobResult, timing each.
+class Job {
+public:
+    Job(const JobParams& params, const PipelineOptions& options, const Context& context)
+        : options_(options), context_(context) {
+        result_.params = params;
+        result_.weft = material_named(options.materials, params.material.weft, "material.weft");
+        result_.warp = material_named(options.materials, params.material.warp, "material.warp");
+        usable_sheet(result_.weft, params.nesting);
+        usable_sheet(result_.warp, params.nesting);
+    }
+
+    PackageSummary run(const PipelineInput& input) {
+        geometry::PolygonSoup soup;
+        run_stage(kRead, [&](const Context&) { soup = read(input); });
+        run_stage(kRepair, [&](const Context&) { mend(soup); });
+        run_stage(kFoliation, [&](const Context& context) { foliate(context); });
+        run_stage(kQuads, [&](const Context& context) { make_quads(context); });
+        run_stage(kStrips, [&](const Context& context) { make_strips_and_pieces(context); });
+        run_stage(kNest, [&](const Context& context) { lay_out(context); });
+        run_stage(kToolpath, [&](const Context& context) { plan(context); });
+        PackageSummary summary;
+        run_stage(kPackage, [&](const Context& context) { certify_and_write(context, summary); });
+        // The report is written last: it holds the times of all the others.
+        summary.package.files.insert(summary.package.files.begin(),
+                                     {"report.json", report_json(result_)});
+        context_.report(kPackage.name, 1.0);
+        summarise(summary);
+        return summary;
+    }
+
+private:
+    template <typename Work>
+    void run_stage(const Stage& stage, Work work) {
+        context_.report(stage.name, stage.begin);
+        Context context = context_;
+        if (context_.progress) {
+            context.progress = [&](std::string_view, double fraction) {
+                const double part = std::clamp(fraction, 0.0, 1.0);
+                furthest_ = std::max(furthest_, stage.begin + part * (stage.end - stage.begin));
+                context_.progress(stage.name, furthest_);
+            };
+        }
+        const double start = context_.now_s();
+        work(context);
+        result_.timings_s.emplace_back(stage.name, context_.now_s() - start);
+        context_.check();
+    }
+
+    geometry::PolygonSoup read(const PipelineInput& input) {
+        geometry::PolygonSoup soup = geometry::read_mesh(input.bytes, input.file_name);
+        result_.input.file = valid_utf8(input.file_name);
+        result_.input.vertices = soup.positions.size();
+        result_.input.faces = soup.face_count();
+        return soup;
+    }
+
+    void mend(const geometry::PolygonSoup& soup) {
+        geometry::RepairedMesh repaired = geometry::repair(soup);
+        result_.repair = repaired.report;
+        warnings_.insert(warnings_.end(), repaired.report.warnings.begin(),
+                         repaired.report.warnings.end());
+        mesh_ = std::move(repaired.mesh);
+        vertex_of_input_ = std::move(repaired.vertex_of_input);
+        scale();
+        result_.topology = geometry::analyse_topology(mesh_);
+    }
+
+    void scale() {
+        const std::optional<double> side = result_.params.scale.longest_side_mm;
+        if (!side) {
+            return;
+        }
+        Eigen::Vector3d low = mesh_.point(*mesh_.vertices_begin());
+        Eigen::Vector3d high = low;
+        for (const auto vertex : mesh_.vertices()) {
+            low = low.cwiseMin(mesh_.point(vertex));
+            high = high.cwiseMax(mesh_.point(vertex));
+        }
+        result_.input.scale = *side / (high - low).maxCoeff();
+        for (const auto vertex : mesh_.vertices()) {
+            mesh_.point(vertex) *= result_.input.scale;
+        }
+    }
+
+    geometry::FoliationOptions foliation_options() const {
+        const FoliationParams& wanted = result_.params.foliation;
+        geometry::FoliationOptions options;
+        options.mode = wanted.mode;
+        options.torus_rings = wanted.torus_rings;
+        if (wanted.corners) {
+            options.corners.emplace();
+            for (std::size_t i = 0; i < 4; ++i) {
+                (*options.corners)[i] = mesh_vertex((*wanted.corners)[i], i);
+            }
+        }
+        return options;
+    }
+
+    int mesh_vertex(int input_vertex, std::size_t corner) const {
+        const auto at = static_cast<std::size_t>(input_vertex);
+        if (input_vertex < 0 || at >= vertex_of_input_.size()) {
+            refuse("no-such-vertex",
+                   fmt::format("foliation.corners[{}]: the model has no vertex {}; it has {}",
+                               corner, input_vertex, vertex_of_input_.size()));
+        }
+        if (vertex_of_input_[at] < 0) {
+            refuse("no-such-vertex",
+                   fmt::format("foliation.corners[{}]: vertex {} belongs to no face that was kept",
+                               corner, input_vertex));
+        }
+        return vertex_of_input_[at];
+    }
+
+    void foliate(const Context& context) {
+        result_.foliation = geometry::compute_foliation(mesh_, foliation_options(), context);
+        warnings_.insert(warnings_.end(), result_.foliation.warnings.begin(),
+                         result_.foliation.warnings.end());
+    }
+
+    void make_quads(const Context& context) {
+        const geometry::GridOptions& grid = result_.params.grid;
+        result_.quads = geometry::build_quad_mesh(result_.foliation, grid, context);
+        const geometry::ClosestPoint surface(geometry::to_triangle_mesh(mesh_));
+        result_.surface_area_mm2 = surface.total_area();
+        result_.quality = geometry::measure_quality(result_.quads, surface, context);
+        int stride = 1;
+        while (result_.quads.quads.size() / static_cast<std::size_t>(stride) > kMostLeafCells) {
+            stride *= 2;
+        }
+        result_.leaves = geometry::sample_leaves(result_.foliation, result_.quads, stride);
+    }
+
+    FitParams fit_of() const {
+        FitParams fit = result_.params.fit;
+        const WeavePattern pattern = result_.params.weave.pattern;
+        // Layers that lie on each other without crossing over need no way up and down.
+        const bool layers =
+            pattern == WeavePattern::DoubleWarp || pattern == WeavePattern::DoubleWeft;
+        fit.crimp = fit.crimp && !layers;
+        return fit;
+    }
+
+    PieceLimits limits_of(const Material& material) const {
+        PieceLimits limits;
+        limits.usable_sheet = usable_sheet(material, result_.params.nesting);
+        limits.thickness_mm = material.thickness_mm;
+        limits.min_width_mm = material.min_strip_width_mm;
+        limits.rotation = result_.params.nesting.rotation;
+        limits.self_gap_mm = material.kerf_mm + kSelfGapMm;
+        return limits;
+    }
+
+    void make_strips_and_pieces(const Context& context) {
+        const FitParams fit = fit_of();
+        const std::array limits = {limits_of(result_.weft), limits_of(result_.warp)};
+        result_.strips = make_strips(result_.quads, fit.columns);
+        result_.weave = weave_cells(result_.quads, result_.params.weave);
+        for (std::size_t i = 0; i < result_.strips.size(); ++i) {
+            Strip& strip = result_.strips[i];
+            const PieceLimits& limit = limits[strip.family == Family::Weft ? 0 : 1];
+            for (Piece& piece : make_pieces(strip, result_.quads, fit, limit, warnings_)) {
+                result_.pieces.push_back(std::move(piece));
+            }
+            context.report(kStrips.name,
+                           static_cast<double>(i + 1) / static_cast<double>(result_.strips.size()));
+        }
+        if (!result_.weave.seams.empty()) {
+            warnings_.push_back(
+                fmt::format("the pattern breaks between {} pairs of neighbouring cells",
+                            result_.weave.seams.size()));
+        }
+    }
+
+    void lay_out(const Context& context) {
+        result_.layout = nest_families(result_.pieces, {result_.weft, result_.warp},
+                                       result_.params.nesting, context);
+        for (const std::string& piece : result_.layout.unplaced) {
+            warnings_.push_back(fmt::format("{}: fits on no sheet", piece));
+        }
+    }
+
+    void plan(const Context& context) {
+        for (const Sheet& sheet : result_.layout.sheets) {
+            const Material& material = sheet.family == "warp" ? result_.warp : result_.weft;
+            CutProgram program =
+                plan_sheet(sheet, result_.pieces, material, options_.machine, context);
+            program.job = result_.input.file;
+            result_.programs.push_back(std::move(program));
+            context.report(kToolpath.name, static_cast<double>(result_.programs.size()) /
+                                               static_cast<double>(result_.layout.sheets.size()));
+        }
+    }
+
+    void certify_and_write(const Context& context, PackageSummary& summary) {
+        std::vector<PackageFile>& files = summary.package.files;
+        std::vector<std::string> gcode;
+        for (const CutProgram& program : result_.programs) {
+            context.check();
+            gcode.push_back(write_gcode(program, options_.machine, result_.params.output.dialect));
+        }
+        result_.certificate = certify(result_, gcode);
+        result_.warnings = joined_warnings(warnings_);
+        files.push_back({"surface.ply", surface_ply(result_)});
+        files.push_back({"quads.obj", quads_obj(result_)});
+        files.push_back({"leaves.json", leaves_json(result_)});
+        files.push_back({"strips.json", strips_json(result_)});
+        files.push_back({"weave.json", weave_json(result_)});
+        files.push_back({"layout.json", layout_json(result_)});
+        for (std::size_t i = 0; i < result_.programs.size(); ++i) {
+            const CutProgram& program = result_.programs[i];
+            const std::string name = fmt::format("sheets/sheet-{:03}", program.sheet);
+            files.push_back({name + ".svg", write_svg(program)});
+            files.push_back({name + ".dxf", write_dxf(program)});
+            files.push_back({name + ".gcode", std::move(gcode[i])});
+        }
+        files.push_back({"guide.html", guide_html(result_)});
+    }
+
+    void summarise(PackageSummary& summary) const {
+        summary.sheets = static_cast<int>(result_.layout.sheets.size());
+        summary.strips = static_cast<int>(result_.strips.size());
+        summary.pieces = static_cast<int>(result_.pieces.size());
+        summary.quads = static_cast<int>(result_.quads.quads.size());
+        for (const CutProgram& program : result_.programs) {
+            summary.estimated_s += program.estimated_s;
+        }
+        summary.warnings = result_.warnings;
+    }
+
+    const PipelineOptions& options_;
+    const Context& context_;
+    JobResult result_;
+    geometry::Mesh mesh_;
+    std::vector<int> vertex_of_input_;
+    std::vector<std::string> warnings_;
+    double furthest_ = 0.0;  // Progress told so far; never falls.
+};
+
+}  // namespace
+
+PackageSummary weave(const PipelineInput& input,
+                     const JobParams& params,
+                     const PipelineOptions& options,
+                     const Context& context) {
+    return Job(params, options, context).run(input);
+}
+
+}  // namespace leafcutter::fab

@@ -1,0 +1,67 @@
+#include "server/cli/interrupt.h"
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <fcntl.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace leafcutter::server {
+
+namespace {
+
+// A signal handler may touch nothing but this.
+std::atomic<int> pipe_of_handler{-1};
+
+constexpr char kSignalled = 's';
+constexpr char kEnd = 'e';
+
+extern "C" void write_to_pipe(int /*number*/) {
+    const int saved = errno;
+    const int pipe = pipe_of_handler.load();
+    if (pipe >= 0) {
+        [[maybe_unused]] const ssize_t written = write(pipe, &kSignalled, 1);
+    }
+    errno = saved;
+}
+
+// A stop request runs callbacks and wakes waiters, which no handler may do: done by a thread of its
+// own.
+void forward(int pipe, std::stop_source source) {
+    char what = 0;
+    while (read(pipe, &what, 1) < 0 && errno == EINTR) {
+    }
+    if (what == kSignalled) {
+        source.request_stop();
+    }
+    close(pipe);
+}
+
+}  // namespace
+
+InterruptWatch::InterruptWatch() {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+        throw std::system_error(errno, std::generic_category(), "pipe");
+    }
+    wake_ = ends[1];
+    pipe_of_handler = wake_;
+    thread_ = std::jthread(forward, ends[0], source_);
+    struct sigaction action {};
+    action.sa_handler = write_to_pipe;
+    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+    sigaction(SIGINT, &action, &before_int_);
+    sigaction(SIGTERM, &action, &before_term_);
+}
+
+InterruptWatch::~InterruptWatch() {
+    sigaction(SIGINT, &before_int_, nullptr);
+    sigaction(SIGTERM, &before_term_, nullptr);
+    pipe_of_handler = -1;
+    [[maybe_unused]] const ssize_t written = write(wake_, &kEnd, 1);
+    thread_.join();
+    close(wake_);
+}
+
+}  // namespace leafcutter::server
