@@ -178,13 +178,14 @@ void check_edges(std::span<const Eigen::Vector3d> positions, std::span<const Tri
         for (const Side& side : sides.first(3)) {
             faces += fmt::format("{}{}", faces.empty() ? "" : ", ", side.face());
         }
+        faces += sides.size() > 3 ? ", ..." : "";
     });
     if (count > 0) {
         throw bad_mesh(
             "non-manifold-edges",
             fmt::format("non-manifold edges ({}): shared by more than two faces, first "
-                        "between vertices {} and {} (counted from 0) at {}, triangles {} "
-                        "…; separate the sheets in a mesh editor",
+                        "between vertices {} and {} (counted from 0) at {}, triangles {}; "
+                        "separate the sheets in a mesh editor",
                         count, first.low(), first.high(), place(positions[first.low()]), faces));
     }
 }
@@ -273,8 +274,9 @@ RepairedMesh repair(const PolygonSoup& soup) {
     report.degenerate_faces_dropped += welded.degenerate_faces;
     report.duplicate_faces_dropped += welded.duplicate_faces;
     if (welded.slits > 0) {
-        report.warnings.push_back(fmt::format(
-            "{} slits, boundaries whose sides touch all along, were kept open", welded.slits));
+        report.warnings.push_back(
+            fmt::format("boundaries whose two sides touch all along were kept open as slits: {}",
+                        welded.slits));
     }
     if (triangles.empty()) {
         throw bad_mesh("zero-area", "zero area: every face repeats a corner");
@@ -285,7 +287,7 @@ RepairedMesh repair(const PolygonSoup& soup) {
     report.split_vertices = split_touching_fans(positions, triangles);
     if (report.split_vertices > 0) {
         report.warnings.push_back(fmt::format(
-            "non-manifold vertices: faces touched in a single point; {} copies were made",
+            "non-manifold vertices, where faces touched in a single point, were split: {}",
             report.split_vertices));
     }
     std::vector<int> new_index;

@@ -1,12 +1,15 @@
 // `leafcutter inspect MODEL`: topology and defects of a mesh as JSON on stdout.
 
+#include <cstddef>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "geometry/error.h"
 #include "geometry/io/read_mesh.h"
 #include "geometry/repair.h"
 #include "geometry/topology.h"
@@ -39,11 +42,21 @@ Json bounding_box_json(const geometry::Mesh& mesh) {
     return {{"min", {low.x(), low.y(), low.z()}}, {"max", {high.x(), high.y(), high.z()}}};
 }
 
+// Errors say which file they are about.
+geometry::RepairedMesh load(const std::vector<std::byte>& bytes,
+                            const std::string& path,
+                            const geometry::ReadLimits& limits) {
+    try {
+        return geometry::repair(geometry::read_mesh(bytes, path, limits));
+    } catch (const geometry::Error& error) {
+        throw geometry::Error(error.kind(), error.code(), path + ": " + error.what());
+    }
+}
+
 Json inspect(const std::string& path) {
     const geometry::ReadLimits limits;
     const std::vector<std::byte> bytes = read_input_file(path, limits.max_bytes);
-    const geometry::RepairedMesh repaired =
-        geometry::repair(geometry::read_mesh(bytes, path, limits));
+    const geometry::RepairedMesh repaired = load(bytes, path, limits);
     const geometry::Topology topology = geometry::analyse_topology(repaired.mesh);
     return {{"format", "leafcutter-inspect/1"},
             {"file", path},

@@ -27,6 +27,11 @@ void* operator new(std::size_t size) {
     return memory;
 }
 
+// Of the same heap as the deletes below.
+void* operator new(std::size_t size, const std::nothrow_t& /*tag*/) noexcept {
+    return size <= kLargestAllocation ? std::malloc(size) : nullptr;
+}
+
 void operator delete(void* memory) noexcept {
     std::free(memory);
 }
