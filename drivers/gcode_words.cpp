@@ -50,7 +50,7 @@ std::string strip_gcode(std::string_view line) {
             comment = true;
         } else if (letter == ';') {
             break;
-        } else if (letter > ' ' && letter != '/') {
+        } else if (static_cast<unsigned char>(letter) > ' ' && letter != '/') {
             const bool lower = letter >= 'a' && letter <= 'z';
             stripped += lower ? static_cast<char>(letter - 'a' + 'A') : letter;
         }

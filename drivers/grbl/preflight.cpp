@@ -171,7 +171,9 @@ private:
         const Point centre{from[0] + centre_[0], from[1] + centre_[1]};
         const double radius = std::hypot(centre_[0], centre_[1]);
         const double begin = std::atan2(-centre_[1], -centre_[0]);
-        double turn = std::atan2(at_[1] - centre[1], at_[0] - centre[0]) - begin;
+        const double x = at_[0] - centre[0];
+        const double y = at_[1] - centre[1];
+        double turn = std::atan2(centre_[1] * x - centre_[0] * y, -centre_[0] * x - centre_[1] * y);
         constexpr double kFull = 2.0 * std::numbers::pi;
         turn += motion_ == 2 && turn >= 0.0 ? -kFull : (motion_ == 3 && turn <= 0.0 ? kFull : 0.0);
         for (int k = 1; k < 72; ++k) {

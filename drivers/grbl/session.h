@@ -42,6 +42,8 @@ public:
     // Attached, settings known, no halt under way.
     bool ready() const { return phase_ == Phase::Ready && halt_ == Halt::None; }
 
+    std::size_t bytes_in_flight() const { return protocol_.bytes_in_flight(); }
+
     // Nothing of ours burns or moves: the link may be closed.
     bool may_close() const;
 
@@ -95,7 +97,7 @@ private:
     void handle_answer(const GrblEvent& event);
     void handle_alarm(const GrblEvent& event);
     void handle_banner(const GrblEvent& event);
-    void handle_setting(const GrblEvent& event);
+    void handle_setting(const std::string& text);
     void handle_message(const GrblEvent& event);
     void handle_status(const StatusReport& report);
     void take_positions(const StatusReport& report);

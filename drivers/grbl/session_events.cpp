@@ -42,7 +42,7 @@ void GrblSession::handle(const GrblEvent& event) {
             handle_banner(event);
             break;
         case GrblEvent::Kind::Setting:
-            handle_setting(event);
+            handle_setting(event.text);
             break;
         case GrblEvent::Kind::Message:
             handle_message(event);
@@ -66,6 +66,9 @@ void GrblSession::handle_answer(const GrblEvent& event) {
     pending_.pop_front();
     if (line.origin == Origin::Job) {
         ++progress_.lines_acknowledged;
+    }
+    if (event.kind == GrblEvent::Kind::Ack && line.text[0] == '$') {
+        handle_setting(line.text);  // Written by hand.
     }
     if (event.kind == GrblEvent::Kind::Error) {
         const std::string text = error_text_of_grbl(event.code);
@@ -128,12 +131,13 @@ void GrblSession::handle_banner(const GrblEvent& event) {
     send_line({Origin::Command, "$I", 0, true, 0.0});
 }
 
-void GrblSession::handle_setting(const GrblEvent& event) {
-    const std::size_t equals = event.text.find('=');
+// "$n=value"; anything else is left alone.
+void GrblSession::handle_setting(const std::string& text) {
+    const std::size_t equals = text.find('=');
     char* end = nullptr;
-    const long number = std::strtol(event.text.c_str() + 1, &end, 10);
-    if (end == event.text.c_str() + equals) {
-        settings_[static_cast<int>(number)] = std::strtod(event.text.c_str() + equals + 1, nullptr);
+    const long number = std::strtol(text.c_str() + 1, &end, 10);
+    if (equals != std::string::npos && equals > 1 && end == text.c_str() + equals) {
+        settings_[static_cast<int>(number)] = std::strtod(text.c_str() + equals + 1, nullptr);
     }
 }
 

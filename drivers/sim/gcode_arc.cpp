@@ -74,10 +74,10 @@ void GcodeInterpreter::add_arc(const Block& block,
     const double centre_second = start[plane.second] + j;
     const double radius = std::hypot(i, j);
     const double from = std::atan2(-j, -i);
-    const double to = std::atan2(block.target_mm[plane.second] - centre_second,
-                                 block.target_mm[plane.first] - centre_first);
+    const double to_first = block.target_mm[plane.first] - centre_first;
+    const double to_second = block.target_mm[plane.second] - centre_second;
     constexpr double kTinyAngle = 5e-7;  // Grbl's ARC_ANGULAR_TRAVEL_EPSILON: below, a full circle.
-    double travel = to - from;
+    double travel = std::atan2(-i * to_second + j * to_first, -i * to_first - j * to_second);
     if (block.modal.motion == Motion::ArcCw) {
         travel -= travel >= -kTinyAngle ? 2.0 * std::numbers::pi : 0.0;
     } else {

@@ -232,7 +232,7 @@ int GcodeInterpreter::read_words(std::string_view stripped, Block& block) const 
             general && (uses_axes(code) || (*group == Group::Motion && code != 800));
         axis_commands += axis_command ? 1 : 0;
         if (axis_commands > 1) {
-            return groups.count(*group) != 0 ? grbl_error::kModalGroup : grbl_error::kAxisConflict;
+            return grbl_error::kAxisConflict;
         }
         if (!groups.insert(*group).second) {
             return grbl_error::kModalGroup;
