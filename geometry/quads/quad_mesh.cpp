@@ -40,6 +40,11 @@ void check_options(const Foliation& foliation, const GridOptions& options) {
             ErrorKind::BadOption, "bad-strip-width",
             fmt::format("grid.strip_width_mm: must be > 0, not {}", options.strip_width_mm));
     }
+    if (options.per_cylinder.size() > foliation.cylinders.size()) {
+        throw Error(ErrorKind::BadOption, "too-many-cylinders",
+                    fmt::format("grid.cylinders: has {} entries, but the surface has {} cylinders",
+                                options.per_cylinder.size(), foliation.cylinders.size()));
+    }
     if (options.planar != Planarity::Off) {
         refuse("grid.planar", "planarisation is not built yet; use \"off\"");
     }

@@ -290,6 +290,9 @@ TEST(QuadMesh, RefusesCountsThatCannotCarryTheTopology) {
               std::string::npos);
     GridOptions own;
     own.per_cylinder = {{.rows = std::nullopt, .cols = 1}};
+    GridOptions more;
+    more.per_cylinder.resize(2);
+    EXPECT_EQ(refusal(torus, more, ErrorKind::BadOption).find("grid.cylinders: has 2"), 0U);
     EXPECT_NE(refusal(torus, own, ErrorKind::BadOption).find("grid.cylinders[0].cols"),
               std::string::npos);
 }
