@@ -98,12 +98,12 @@ Foliation compute_foliation(const Mesh& mesh,
     const TriangleMesh surface = to_triangle_mesh(mesh);
     Foliation foliation;
     if (natural == FoliationMode::Disk) {
-        foliation = foliate_disk(surface, topology.boundary_loops[0], options.corners, context);
+        foliation = foliate_disk(surface, topology.boundary_loops[0], options, context);
     } else if (natural == FoliationMode::Annulus) {
         foliation = foliate_annulus(
-            surface, {topology.boundary_loops[0], topology.boundary_loops[1]}, context);
+            surface, {topology.boundary_loops[0], topology.boundary_loops[1]}, options, context);
     } else {
-        foliation = foliate_torus(surface, options.torus_rings, context);
+        foliation = foliate_torus(surface, options, context);
     }
     context.report("foliation", 1.0);
     return foliation;

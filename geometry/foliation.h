@@ -6,8 +6,8 @@
 // Foliation", sections 3.2 to 3.6.
 //
 // Coordinates of a chart are (g, f): f is the harmonic map, constant along the leaves of F; g its
-// conjugate, constant along the leaves of F*. (g, f) is right-handed seen from outside. Both are in the
-// same unit, so that a square of (g, f) is a square on the surface, up to the conformal factor.
+// conjugate, constant along the leaves of F*. (g, f) is right-handed seen from outside. Both are in
+// the same unit, so that a square of (g, f) is a square on the surface, up to the conformal factor.
 
 #pragma once
 
@@ -35,15 +35,20 @@ enum class FoliationMode {
     SpherePillowcase
 };
 
+// Whether triangles may be split, flat, where they are too coarse for a conformal chart.
+enum class Refinement { Allowed, Off };
+
 enum class TorusRings { Short, Long };  // Which generator of a torus the leaves of F run around.
 
 struct FoliationOptions {
     FoliationMode mode = FoliationMode::Auto;
-    std::optional<std::array<int, 4>> corners;  // Disk: mesh vertices on the boundary, any order.
+    std::optional<std::array<int, 4>> corners = {};  // Disk: boundary vertices, any order.
     TorusRings torus_rings = TorusRings::Short;
+    Refinement refinement = Refinement::Allowed;
 };
 
-// Target of the harmonic map. A torus has one edge and one node; a disk or annulus one edge, two nodes.
+// Target of the harmonic map. A torus has one edge and one node; a disk or annulus one edge, two
+// nodes.
 struct MetricGraph {
     struct Edge {
         int from = 0;
@@ -98,9 +103,9 @@ struct Foliation {
 // Computes the foliations of a connected surface.
 //
 // Guarantees: no triangle of any chart is flipped or degenerate in (g, f).
-// Throws Error(NotSupported) for a surface whose Euler characteristic is below 0 or that is a sphere,
-// Error(BadOption) for corners that are not four different vertices of the one boundary loop, and
-// Error(SelfCheck) where a result fails its check.
+// Throws Error(NotSupported) for a surface whose Euler characteristic is below 0 or that is a
+// sphere, Error(BadOption) for corners that are not four different vertices of the one boundary
+// loop, and Error(SelfCheck) where a result fails its check.
 Foliation compute_foliation(const Mesh& mesh,
                             const FoliationOptions& options = {},
                             const Context& context = {});

@@ -5,11 +5,9 @@
 #include <cstdint>
 #include <utility>
 
-#include "geometry/cases/chart_warnings.h"
 #include "geometry/cases/corners.h"
-#include "geometry/harmonic/bijectivity.h"
-#include "geometry/harmonic/chart_map.h"
-#include "geometry/harmonic/split_chords.h"
+#include "geometry/cases/finish.h"
+#include "geometry/harmonic/resolve.h"
 #include "geometry/laplacian.h"
 #include "geometry/loops/tree_cotree.h"
 
@@ -87,58 +85,54 @@ std::vector<std::uint8_t> lines_of_vertices(const std::array<std::vector<int>, 2
     return lines;
 }
 
-}  // namespace
-
-Foliation foliate_annulus(const TriangleMesh& mesh,
-                          const std::array<std::vector<int>, 2>& loops,
-                          const Context& context) {
-    std::array<std::vector<int>, 2> rings = loops;
-    if (arc_lengths(mesh, rings[1]).back() > arc_lengths(mesh, rings[0]).back()) {
-        std::swap(rings[0], rings[1]);
-    }
-    SplitMesh split = split_chords(mesh, lines_of_vertices(rings, mesh.positions.size()));
-    context.check();
-
-    ChartMap map = start_chart(std::move(split.mesh), std::move(split.source_vertex));
-    std::vector<int> loop_of_vertex(map.gf.size(), -1);
-    for (int k = 0; k < 2; ++k) {
-        for (const int v : rings[at(k)]) {
-            loop_of_vertex[at(v)] = k;
-        }
-    }
+// `lines` has bit 0 for the lower loop, bit 1 for the upper. g is 0 at `origin`.
+SolvedChart solve_ring(const ChartSurface& surface, int origin) {
+    SolvedChart solved;
+    ChartMap& map = solved.map;
+    map = start_chart(surface);
+    std::vector<int> loop_of_vertex(surface.lines.size());
+    std::transform(surface.lines.begin(), surface.lines.end(), loop_of_vertex.begin(),
+                   [](std::uint8_t lines) { return static_cast<int>(lines) - 1; });
     const Cochain arc = arc_cochain(map.edges, loop_of_vertex, 0, 1);
     std::vector<Jump> jump(arc.size());
     std::transform(arc.begin(), arc.end(), jump.begin(), [](int j) { return Jump{j, 0}; });
     const IntrinsicTriangulation delaunay = intrinsic_delaunay(map.mesh, map.edges, jump);
     const std::vector<WeightedEdge> edges = cotangent_edges(delaunay);
-    context.report("foliation", 0.2);
     const Eigen::VectorXd f = between_loops(edges, loop_of_vertex);
-    context.report("foliation", 0.5);
-    const Conjugate conjugate = round_the_ring(edges, delaunay, rings[0].front());
-    context.report("foliation", 0.8);
-
-    const double upper = 2.0 * dirichlet_energy(edges, f);
-    const double lower = 1.0 / (2.0 * conjugate.energy);
+    const Conjugate conjugate = round_the_ring(edges, delaunay, origin);
+    solved.upper = 2.0 * dirichlet_energy(edges, f);
+    solved.lower = 1.0 / (2.0 * conjugate.energy);
     map.shape = ChartShape::Annulus;
     map.height = 1.0;
-    map.width = std::sqrt(upper * lower);
+    map.width = std::sqrt(solved.upper * solved.lower);
     set_coordinates(map, f, conjugate, arc);
+    return solved;
+}
 
-    Foliation foliation;
+}  // namespace
+
+Foliation foliate_annulus(const TriangleMesh& mesh,
+                          const std::array<std::vector<int>, 2>& loops,
+                          const FoliationOptions& options,
+                          const Context& context) {
+    std::array<std::vector<int>, 2> rings = loops;
+    if (arc_lengths(mesh, rings[1]).back() > arc_lengths(mesh, rings[0]).back()) {
+        std::swap(rings[0], rings[1]);
+    }
+    const int lower = rings[0].front();
+    const int upper = rings[1].front();
+    SolvedChart solved = solve_resolved(
+        start_surface(mesh, lines_of_vertices(rings, mesh.positions.size())),
+        [lower](const ChartSurface& surface) { return solve_ring(surface, lower); },
+        options.refinement, context);
+    // The surface lies left of both loops, so g grows along the lower and falls along the upper.
+    Rail bottom{boundary_path(solved.map.edges, lower, lower), 0, true};
+    Rail top{boundary_path(solved.map.edges, upper, upper), 0, true};
+    std::reverse(top.vertices.begin(), top.vertices.end());
+    Foliation foliation =
+        finish_foliation(std::move(solved), {std::move(bottom), std::move(top)}, context);
     foliation.mode = FoliationMode::Annulus;
     foliation.graph = {2, {{0, 1, 1.0}}};
-    foliation.energy = 0.5 * upper;
-    foliation.iterations = 1;
-    // The surface lies left of both loops, so g grows along the lower and falls along the upper.
-    std::reverse(rings[1].begin(), rings[1].end());
-    const FlipReport repair =
-        make_bijective(map, {{rings[0], 0, true}, {rings[1], 0, true}}, context);
-    lift_into_domain(map);
-    Cylinder cylinder = finish_cylinder(std::move(map));
-    cylinder.energy = foliation.energy;
-    cylinder.conformal_gap = upper / lower - 1.0;
-    foliation.warnings = chart_warnings(cylinder, repair);
-    foliation.cylinders.push_back(std::move(cylinder));
     return foliation;
 }
 

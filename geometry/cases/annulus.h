@@ -16,6 +16,7 @@ namespace leafcutter::geometry {
 // `loops` are the two boundary loops, surface to the left. f is 0 on the longer one.
 Foliation foliate_annulus(const TriangleMesh& mesh,
                           const std::array<std::vector<int>, 2>& loops,
+                          const FoliationOptions& options,
                           const Context& context);
 
 }  // namespace leafcutter::geometry

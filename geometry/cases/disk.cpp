@@ -7,11 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/cases/chart_warnings.h"
 #include "geometry/cases/corners.h"
-#include "geometry/harmonic/bijectivity.h"
-#include "geometry/harmonic/chart_map.h"
-#include "geometry/harmonic/split_chords.h"
+#include "geometry/cases/finish.h"
+#include "geometry/harmonic/resolve.h"
 #include "geometry/laplacian.h"
 
 namespace leafcutter::geometry {
@@ -76,11 +74,34 @@ Eigen::VectorXd between_sides(const std::vector<WeightedEdge>& edges,
     return HarmonicSolver(edges, held).solve(std::move(values));
 }
 
-std::vector<Rail> rails_of(const Sides& sides) {
+SolvedChart solve_rectangle(const ChartSurface& surface) {
+    SolvedChart solved;
+    ChartMap& map = solved.map;
+    map = start_chart(surface);
+    const std::vector<WeightedEdge> edges =
+        cotangent_edges(intrinsic_delaunay(map.mesh, map.edges));
+    const Eigen::VectorXd f = between_sides(edges, surface.lines, {Bottom, Top});
+    const Eigen::VectorXd g = between_sides(edges, surface.lines, {Left, Right});
+    // Both energies bound the modulus, one from above, one from below; their geometric mean is much
+    // closer to it.
+    solved.upper = 2.0 * dirichlet_energy(edges, f);
+    solved.lower = 1.0 / (2.0 * dirichlet_energy(edges, g));
+    map.shape = ChartShape::Rectangle;
+    map.height = 1.0;
+    map.width = std::sqrt(solved.upper * solved.lower);
+    for (std::size_t v = 0; v < map.gf.size(); ++v) {
+        const auto i = static_cast<Eigen::Index>(v);
+        map.gf[v] = {map.width * g[i], f[i]};
+    }
+    return solved;
+}
+
+std::vector<Rail> rails_between(const HalfEdges& edges, const std::array<int, 4>& corners) {
     std::vector<Rail> rails;
     for (std::size_t k = 0; k < 4; ++k) {
-        Rail rail{sides[k], k % 2 == 0 ? 0 : 1, false};
-        if (k >= 2) {
+        Rail rail{boundary_path(edges, corners[k], corners[(k + 1) % 4]), k % 2 == 0 ? 0 : 1,
+                  false};
+        if (k == Top || k == Left) {
             std::reverse(rail.vertices.begin(), rail.vertices.end());
         }
         rails.push_back(std::move(rail));
@@ -92,7 +113,7 @@ std::vector<Rail> rails_of(const Sides& sides) {
 
 Foliation foliate_disk(const TriangleMesh& mesh,
                        std::span<const int> loop,
-                       const std::optional<std::array<int, 4>>& corners,
+                       const FoliationOptions& options,
                        const Context& context) {
     if (loop.size() < 4) {
         throw Error(ErrorKind::BadMesh, "boundary-too-short",
@@ -100,47 +121,18 @@ Foliation foliate_disk(const TriangleMesh& mesh,
                         " vertices, four corners need four; refine the mesh");
     }
     const LoopCorners chosen =
-        corners ? locate_corners(loop, *corners) : choose_corners(mesh, loop);
+        options.corners ? locate_corners(loop, *options.corners) : choose_corners(mesh, loop);
     const Sides sides = cut_sides(loop, chosen, first_corner(arc_lengths(mesh, loop), chosen));
-    SplitMesh split = split_chords(mesh, lines_of_vertices(sides, mesh.positions.size()));
-    context.check();
-
-    ChartMap map = start_chart(std::move(split.mesh), std::move(split.source_vertex));
-    const IntrinsicTriangulation delaunay = intrinsic_delaunay(map.mesh, map.edges);
-    const std::vector<WeightedEdge> edges = cotangent_edges(delaunay);
-    context.report("foliation", 0.2);
-    const Eigen::VectorXd f = between_sides(edges, split.lines, {Bottom, Top});
-    context.report("foliation", 0.5);
-    const Eigen::VectorXd g = between_sides(edges, split.lines, {Left, Right});
-    context.report("foliation", 0.8);
-
-    // Both energies bound the modulus, one from above, one from below; their mean is much closer to
-    // it.
-    const double upper = 2.0 * dirichlet_energy(edges, f);
-    const double lower = 1.0 / (2.0 * dirichlet_energy(edges, g));
-    map.shape = ChartShape::Rectangle;
-    map.height = 1.0;
-    map.width = std::sqrt(upper * lower);
-    for (std::size_t v = 0; v < map.gf.size(); ++v) {
-        const auto i = static_cast<Eigen::Index>(v);
-        map.gf[v] = {map.width * g[i], f[i]};
-    }
-    for (const int v : sides[Right]) {
-        map.gf[at(v)].x() = map.width;
-    }
-
-    Foliation foliation;
+    const std::array<int, 4> corners{sides[Bottom].front(), sides[Right].front(),
+                                     sides[Top].front(), sides[Left].front()};
+    SolvedChart solved =
+        solve_resolved(start_surface(mesh, lines_of_vertices(sides, mesh.positions.size())),
+                       solve_rectangle, options.refinement, context);
+    const std::vector<Rail> rails = rails_between(solved.map.edges, corners);
+    Foliation foliation = finish_foliation(std::move(solved), rails, context);
     foliation.mode = FoliationMode::Disk;
     foliation.graph = {2, {{0, 1, 1.0}}};
-    foliation.corners = {sides[0].front(), sides[1].front(), sides[2].front(), sides[3].front()};
-    foliation.energy = 0.5 * upper;
-    foliation.iterations = 1;
-    const FlipReport repair = make_bijective(map, rails_of(sides), context);
-    Cylinder cylinder = finish_cylinder(std::move(map));
-    cylinder.energy = foliation.energy;
-    cylinder.conformal_gap = upper / lower - 1.0;
-    foliation.warnings = chart_warnings(cylinder, repair);
-    foliation.cylinders.push_back(std::move(cylinder));
+    foliation.corners = corners;
     return foliation;
 }
 

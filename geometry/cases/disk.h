@@ -5,8 +5,6 @@
 
 #pragma once
 
-#include <array>
-#include <optional>
 #include <span>
 
 #include "geometry/foliation.h"
@@ -17,7 +15,7 @@ namespace leafcutter::geometry {
 // Throws as compute_foliation does.
 Foliation foliate_disk(const TriangleMesh& mesh,
                        std::span<const int> loop,
-                       const std::optional<std::array<int, 4>>& corners,
+                       const FoliationOptions& options,
                        const Context& context);
 
 }  // namespace leafcutter::geometry

@@ -1,14 +1,13 @@
 #include "geometry/cases/torus.h"
 
 #include <cmath>
-#include <numeric>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "geometry/cases/chart_warnings.h"
-#include "geometry/harmonic/bijectivity.h"
-#include "geometry/harmonic/chart_map.h"
+#include "geometry/cases/finish.h"
+#include "geometry/harmonic/resolve.h"
 #include "geometry/laplacian.h"
 #include "geometry/loops/tree_cotree.h"
 
@@ -33,7 +32,7 @@ struct HarmonicForms {
     }
 };
 
-HarmonicForms solve_forms(const ChartMap& map, const Context& context) {
+HarmonicForms solve_forms(const ChartMap& map) {
     HarmonicForms forms;
     std::vector<Cochain> basis =
         cohomology_basis(map.edges, static_cast<int>(map.mesh.positions.size()));
@@ -49,12 +48,10 @@ HarmonicForms solve_forms(const ChartMap& map, const Context& context) {
     }
     const IntrinsicTriangulation delaunay = intrinsic_delaunay(map.mesh, map.edges, jump);
     const std::vector<WeightedEdge> edges = cotangent_edges(delaunay);
-    context.report("foliation", 0.2);
 
     std::vector<char> held(map.gf.size(), 0);
     held.front() = 1;
     const HarmonicSolver solver(edges, held);
-    context.report("foliation", 0.6);
     std::array<std::vector<double>, 2> rise;
     for (std::size_t k = 0; k < 2; ++k) {
         std::vector<double> edge_jump;
@@ -126,40 +123,41 @@ void set_coordinates(ChartMap& map,
     }
 }
 
-}  // namespace
-
-Foliation foliate_torus(const TriangleMesh& mesh, TorusRings rings, const Context& context) {
-    std::vector<int> source(mesh.positions.size());
-    std::iota(source.begin(), source.end(), 0);
-    ChartMap map = start_chart(mesh, std::move(source));
-    const HarmonicForms forms = solve_forms(map, context);
-    context.report("foliation", 0.9);
+SolvedChart solve_torus(const ChartSurface& surface, TorusRings rings) {
+    SolvedChart solved;
+    ChartMap& map = solved.map;
+    map = start_chart(surface);
+    const HarmonicForms forms = solve_forms(map);
     // The form of least energy rises along the long generator: its level sets are the short rings.
     auto [rising, round] = shortest_classes(forms);
     if (rings == TorusRings::Long) {
         std::swap(rising, round);
     }
-    const double determinant = forms.gram.determinant();
-    const double upper = forms.product(rising, rising);
-    map.shape = ChartShape::Torus;
-    map.height = 1.0;
-    map.width = upper / std::sqrt(determinant);
-    set_coordinates(map, forms, rising, round);
-
-    Foliation foliation;
-    foliation.mode = FoliationMode::Torus;
-    foliation.graph = {1, {{0, 0, 1.0}}};
-    foliation.energy = 0.5 * upper;
-    foliation.iterations = 1;
-    const FlipReport repair = make_bijective(map, {}, context);
-    lift_into_domain(map);
-    Cylinder cylinder = finish_cylinder(std::move(map));
-    cylinder.energy = foliation.energy;
     // Riemann's bilinear relation: the determinant is 1 for harmonic forms, and it is the ratio of
     // the bounds that f and g give for the modulus.
-    cylinder.conformal_gap = determinant - 1.0;
-    foliation.warnings = chart_warnings(cylinder, repair);
-    foliation.cylinders.push_back(std::move(cylinder));
+    const double determinant = forms.gram.determinant();
+    solved.upper = forms.product(rising, rising);
+    solved.lower = solved.upper / determinant;
+    map.shape = ChartShape::Torus;
+    map.height = 1.0;
+    map.width = solved.upper / std::sqrt(determinant);
+    set_coordinates(map, forms, rising, round);
+    return solved;
+}
+
+}  // namespace
+
+Foliation foliate_torus(const TriangleMesh& mesh,
+                        const FoliationOptions& options,
+                        const Context& context) {
+    const TorusRings rings = options.torus_rings;
+    SolvedChart solved = solve_resolved(
+        start_surface(mesh, std::vector<std::uint8_t>(mesh.positions.size(), 0)),
+        [rings](const ChartSurface& surface) { return solve_torus(surface, rings); },
+        options.refinement, context);
+    Foliation foliation = finish_foliation(std::move(solved), {}, context);
+    foliation.mode = FoliationMode::Torus;
+    foliation.graph = {1, {{0, 0, 1.0}}};
     return foliation;
 }
 

@@ -9,6 +9,8 @@ namespace leafcutter::geometry {
 
 // `mesh` is connected, closed and of genus 1. The leaves of F are homotopic to the generator with
 // the shorter (or longer) rings in the conformal metric, out of a Gauss-reduced pair.
-Foliation foliate_torus(const TriangleMesh& mesh, TorusRings rings, const Context& context);
+Foliation foliate_torus(const TriangleMesh& mesh,
+                        const FoliationOptions& options,
+                        const Context& context);
 
 }  // namespace leafcutter::geometry

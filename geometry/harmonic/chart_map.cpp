@@ -37,12 +37,12 @@ bool is_bad(const std::array<Eigen::Vector2d, 3>& corners) {
 
 }  // namespace
 
-ChartMap start_chart(TriangleMesh mesh, std::vector<int> source_vertex) {
+ChartMap start_chart(const ChartSurface& surface) {
     ChartMap map;
-    map.edges = build_half_edges(mesh.triangles, static_cast<int>(mesh.positions.size()));
-    map.gf.assign(mesh.positions.size(), Eigen::Vector2d::Zero());
-    map.mesh = std::move(mesh);
-    map.source_vertex = std::move(source_vertex);
+    map.mesh = surface.mesh;
+    map.edges = surface.edges;
+    map.source_vertex = surface.source_vertex;
+    map.gf.assign(surface.mesh.positions.size(), Eigen::Vector2d::Zero());
     return map;
 }
 

@@ -13,6 +13,7 @@
 
 #include "geometry/foliation.h"
 #include "geometry/half_edges.h"
+#include "geometry/harmonic/chart_surface.h"
 #include "geometry/types.h"
 
 namespace leafcutter::geometry {
@@ -39,8 +40,8 @@ struct ChartMap {
     }
 };
 
-// A map of `mesh` with coordinates yet to be set.
-ChartMap start_chart(TriangleMesh mesh, std::vector<int> source_vertex);
+// A map of `surface` with coordinates yet to be set.
+ChartMap start_chart(const ChartSurface& surface);
 
 // (g, f) of the corners of a triangle, lifted continuously from its first corner.
 std::array<Eigen::Vector2d, 3> lifted_corners(const ChartMap& map, int triangle);

@@ -1,6 +1,7 @@
 // The ladder that makes charts one-to-one, and its guarantee on nasty input.
 
 #include <cmath>
+#include <cstdint>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -28,7 +29,8 @@ constexpr int kCells = 8;
 // The identity of the unit square, with its four rails.
 ChartMap identity_map() {
     const TriangleMesh square = make_square(kCells);
-    ChartMap map = start_chart(square, std::vector<int>(square.positions.size(), -1));
+    ChartMap map =
+        start_chart(start_surface(square, std::vector<std::uint8_t>(square.positions.size(), 0)));
     map.width = 1.0;
     map.height = 1.0;
     for (std::size_t v = 0; v < map.gf.size(); ++v) {

@@ -19,6 +19,9 @@ using testing::renumbered;
 using testing::to_mesh;
 using testing::vertex_gf;
 
+// Tests of the plain discretisation.
+constexpr FoliationOptions kAsGiven{.refinement = Refinement::Off};
+
 TEST(AnnulusFoliation, IsExactOnAPrism) {
     const TriangleMesh prism = make_prism(24, 20, 0.2, 1.0);
     const Foliation foliation = compute_foliation(to_mesh(prism));
@@ -42,7 +45,7 @@ TEST(AnnulusFoliation, BoundaryLoopsAreLeaves) {
     const auto gf = vertex_gf(chart);
     for (std::size_t k = 0; k < 40; ++k) {
         EXPECT_EQ(gf[k].y(), 0.0);  // The longer loop.
-        EXPECT_EQ(gf[gf.size() - 1 - k].y(), chart.height);
+        EXPECT_EQ(gf[ring.positions.size() - 1 - k].y(), chart.height);
     }
 }
 
@@ -51,7 +54,8 @@ TEST(AnnulusFoliation, ModulusOfAFlatRingConvergesToTheClosedForm) {
     std::vector<double> errors;
     for (const int cells : {6, 12, 24}) {
         const Cylinder chart =
-            compute_foliation(to_mesh(make_ring(5 * cells, cells, 1.0, 3.0))).cylinders[0];
+            compute_foliation(to_mesh(make_ring(5 * cells, cells, 1.0, 3.0)), kAsGiven)
+                .cylinders[0];
         EXPECT_TRUE(is_sound(chart));
         errors.push_back(std::abs(chart.width / chart.height - exact) / exact);
     }
@@ -61,7 +65,7 @@ TEST(AnnulusFoliation, ModulusOfAFlatRingConvergesToTheClosedForm) {
 }
 
 TEST(AnnulusFoliation, WidthLiesBetweenItsCertifiedBounds) {
-    const Foliation foliation = compute_foliation(to_mesh(make_ring(15, 3, 1.0, 3.0)));
+    const Foliation foliation = compute_foliation(to_mesh(make_ring(15, 3, 1.0, 3.0)), kAsGiven);
     const double exact = 2.0 * std::numbers::pi / std::log(3.0);
     const double upper = 2.0 * foliation.energy;
     EXPECT_GT(upper, foliation.cylinders[0].width);
@@ -79,8 +83,8 @@ TEST(AnnulusFoliation, DoesNotDependOnTheCut) {
              const double r = 1.0 + 0.3 * std::cos(3.0 * a) * v;
              return Eigen::Vector3d(r * std::cos(a), r * std::sin(a), 0.8 * v);
          }});
-    const Cylinder a = compute_foliation(to_mesh(ring)).cylinders[0];
-    const Cylinder b = compute_foliation(to_mesh(renumbered(ring))).cylinders[0];
+    const Cylinder a = compute_foliation(to_mesh(ring), kAsGiven).cylinders[0];
+    const Cylinder b = compute_foliation(to_mesh(renumbered(ring)), kAsGiven).cylinders[0];
     ASSERT_NEAR(a.width, b.width, 1e-9);
     const auto gf_a = vertex_gf(a);
     const auto gf_b = vertex_gf(b);
@@ -124,9 +128,9 @@ TEST(AnnulusFoliation, IsHalfOfTheFoliationOfTheDoubleCover) {
     for (const auto& t : half.triangles) {
         doubled.triangles.push_back({copy_of[at(t[0])], copy_of[at(t[2])], copy_of[at(t[1])]});
     }
-    const Cylinder annulus = compute_foliation(to_mesh(half)).cylinders[0];
+    const Cylinder annulus = compute_foliation(to_mesh(half), kAsGiven).cylinders[0];
     for (const TorusRings rings : {TorusRings::Short, TorusRings::Long}) {
-        FoliationOptions options;
+        FoliationOptions options = kAsGiven;
         options.torus_rings = rings;
         const Cylinder torus = compute_foliation(to_mesh(doubled), options).cylinders[0];
         const auto gf = vertex_gf(torus);
@@ -158,7 +162,7 @@ TEST(AnnulusFoliation, SplitsChordsOfALoop) {
         prism.positions.emplace_back(middle + Eigen::Vector3d(0, 0, -0.2));
         prism.triangles.push_back({(i + 1) % 12, i, static_cast<int>(prism.positions.size()) - 1});
     }
-    const Cylinder chart = compute_foliation(to_mesh(prism)).cylinders[0];
+    const Cylinder chart = compute_foliation(to_mesh(prism), kAsGiven).cylinders[0];
     EXPECT_TRUE(is_sound(chart));
     EXPECT_EQ(chart.mesh.positions.size(), prism.positions.size() + 6);
 }

@@ -1,7 +1,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "geometry/cases/corners.h"
@@ -128,6 +130,7 @@ TEST(DiskFoliation, ModulusOfARingSectorConvergesToTheClosedForm) {
                  return Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0.0);
              }});
         FoliationOptions options;
+        options.refinement = Refinement::Off;
         const int n = cells + 1;
         options.corners = {0, cells, n * n - 1, n * n - n};
         const Cylinder chart = compute_foliation(to_mesh(sector), options).cylinders[0];
@@ -158,11 +161,42 @@ TEST(DiskFoliation, SplitsChordsAndKeepsTheGivenVertices) {
     }
 }
 
+// A circle with four corners: at each, the map goes as the square root of the distance.
 TEST(DiskFoliation, WarnsWhereTheMeshIsTooCoarse) {
-    const Foliation foliation = compute_foliation(to_mesh(make_ellipse(3, 1.0)));
+    FoliationOptions options;
+    options.refinement = Refinement::Off;
+    const Foliation foliation = compute_foliation(to_mesh(make_ellipse(3, 1.0)), options);
     ASSERT_GT(foliation.cylinders[0].conformal_gap, 0.05);
     ASSERT_EQ(foliation.warnings.size(), 1U);
     EXPECT_NE(foliation.warnings[0].find("coarse"), std::string::npos);
+}
+
+TEST(DiskFoliation, RefinesFlatUntilTheModulusIsCertain) {
+    const TriangleMesh coarse = make_ellipse(6, 1.0);
+    const Foliation foliation = compute_foliation(to_mesh(coarse));
+    const Cylinder& chart = foliation.cylinders[0];
+    EXPECT_TRUE(is_sound(chart));
+    EXPECT_TRUE(foliation.warnings.empty());
+    EXPECT_LT(chart.conformal_gap, 0.006);
+    EXPECT_NEAR(chart.width, 1.0, 1e-3);
+    const auto area_of = [](const TriangleMesh& mesh) {
+        double sum = 0.0;
+        for (const auto& t : mesh.triangles) {
+            sum += 0.5 * (mesh.positions[at(t[1])] - mesh.positions[at(t[0])])
+                             .cross(mesh.positions[at(t[2])] - mesh.positions[at(t[0])])
+                             .norm();
+        }
+        return sum;
+    };
+    EXPECT_GT(chart.mesh.triangles.size(), coarse.triangles.size());
+    EXPECT_NEAR(area_of(chart.mesh), area_of(coarse), 1e-12);
+    // Boundary midpoints stay on their sides.
+    for (const Eigen::Vector2d& gf : vertex_gf(chart)) {
+        EXPECT_GE(gf.x(), 0.0);
+        EXPECT_LE(gf.x(), chart.width);
+        EXPECT_GE(gf.y(), 0.0);
+        EXPECT_LE(gf.y(), chart.height);
+    }
 }
 
 }  // namespace

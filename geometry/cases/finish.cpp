@@ -1,7 +1,9 @@
-#include "geometry/cases/chart_warnings.h"
+#include "geometry/cases/finish.h"
 
 #include <array>
 #include <cstdio>
+#include <string>
+#include <utility>
 
 namespace leafcutter::geometry {
 namespace {
@@ -15,8 +17,7 @@ std::string percent(double ratio) {
     return text.data();
 }
 
-}  // namespace
-
+// Sentences about an inaccurate conformal modulus and about repairs that cost accuracy.
 std::vector<std::string> chart_warnings(const Cylinder& cylinder, const FlipReport& repair) {
     std::vector<std::string> warnings;
     if (cylinder.conformal_gap > kLargestGap) {
@@ -37,6 +38,24 @@ std::vector<std::string> chart_warnings(const Cylinder& cylinder, const FlipRepo
                            "costs right angles; remesh the model");
     }
     return warnings;
+}
+
+}  // namespace
+
+Foliation finish_foliation(SolvedChart solved,
+                           const std::vector<Rail>& rails,
+                           const Context& context) {
+    const FlipReport repair = make_bijective(solved.map, rails, context);
+    lift_into_domain(solved.map);
+    Cylinder cylinder = finish_cylinder(std::move(solved.map));
+    cylinder.energy = 0.5 * solved.upper;
+    cylinder.conformal_gap = solved.gap();
+    Foliation foliation;
+    foliation.energy = cylinder.energy;
+    foliation.iterations = 1;
+    foliation.warnings = chart_warnings(cylinder, repair);
+    foliation.cylinders.push_back(std::move(cylinder));
+    return foliation;
 }
 
 }  // namespace leafcutter::geometry
