@@ -198,9 +198,10 @@ export const en = {
     sheetsLeft: (count: number) => (count === 1 ? '1 sheet to cut' : `${count} sheets to cut`),
     noMachine: 'No machine is connected.',
     again: 'Cut again',
+    ready: (device: string) => `Ready to start on ${device}`,
     states: {
       waiting: (device: string) => `Waiting for ${device}`,
-      armed: (device: string) => `Ready to start on ${device}`,
+      armed: (device: string) => `Starting on ${device}`,
       cutting: (device: string) => `Cutting on ${device}`,
       paused: (device: string) => `Paused on ${device}`,
       'awaiting-sheet': (device: string) => `Next sheet on ${device}`,

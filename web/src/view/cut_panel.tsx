@@ -14,8 +14,8 @@ const deviceName = (id: string): string => feed.value.devices.get(id)?.name ?? i
 
 // A cut that waits only for its operator is ready, whatever its queue calls it.
 function cutWord(cut: Cut): string {
-  const state = cut.state === 'waiting' && cut.actions.includes('start') ? 'armed' : cut.state;
-  return t.cut.states[state](deviceName(cut.device));
+  const word = cut.actions.includes('start') ? t.cut.ready : t.cut.states[cut.state];
+  return word(deviceName(cut.device));
 }
 
 function QueueForm(props: { readonly job: Job }) {
