@@ -4,6 +4,7 @@
 #include "fab/nest/nest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -21,11 +22,18 @@ namespace leafcutter::fab {
 
 namespace {
 
-// Of two heaps, the one whose last sheet is less used by this much is better.
+// One way to build a heap.
+struct Recipe {
+    std::vector<std::size_t> order;
+    bool turned = false;  // Gravity towards the left edge instead of the lower one.
+    double top_weight = 0.0;
+};
+
 struct Best {
     Heap heap;
-    double used = std::numeric_limits<double>::infinity();
-    bool turned = false;
+    double used =
+        std::numeric_limits<double>::infinity();  // Sheets, the last one by its used part.
+    Recipe recipe;
 };
 
 Eigen::Vector2d usable_extent(const SheetSize& size, const NestOptions& options) {
@@ -68,20 +76,15 @@ double raster_cell_mm(const std::vector<NestShape>& shapes, const Eigen::Vector2
     return std::max(finest, std::clamp(*quarter / 8.0, 0.4, 2.0));
 }
 
-// Longest first, wide before narrow; `noise` in [0, 1) reorders neighbours.
-std::vector<std::size_t> order_of(const std::vector<NestShape>& shapes,
-                                  double noise,
-                                  std::mt19937& random) {
-    std::vector<double> keys;
-    for (const NestShape& shape : shapes) {
-        const double roll = static_cast<double>(random()) / 4294967296.0;
-        const double size = shape.diameter_mm + 2.0 * shape.width_mm;
-        keys.push_back(size * (1.0 + noise * (2.0 * roll - 1.0)));
-    }
+// Longest first, wide before narrow.
+std::vector<std::size_t> longest_first(const std::vector<NestShape>& shapes) {
+    const auto size = [&](std::size_t i) {
+        return shapes[i].diameter_mm + 2.0 * shapes[i].width_mm;
+    };
     std::vector<std::size_t> order(shapes.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return keys[a] > keys[b]; });
+                     [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
     return order;
 }
 
@@ -99,8 +102,7 @@ public:
           random_(options.seed) {}
 
     Best run() {
-        constexpr std::array<double, 3> kTopWeights{0.0, 0.5, 0.25};
-        constexpr std::size_t kMostRounds = 64;
+        constexpr std::size_t kMostRounds = 200;
         // One shape has nothing to be ordered against: each way of gravity is tried once.
         const std::size_t rounds = shapes_.size() == 1 ? 2 : kMostRounds;
         std::int64_t spent = 0;
@@ -108,11 +110,8 @@ public:
             if (round > 0 && spent >= options_.max_evaluations) {
                 break;
             }
-            const double noise = round < 2 ? 0.0 : 0.04 * static_cast<double>(1 + round % 4);
-            const std::vector<std::size_t> order = order_of(shapes_, noise, random_);
-            const double weight = kTopWeights[(round / 2) % kTopWeights.size()];
             try {
-                spent += std::max<std::int64_t>(1, attempt(order, round % 2 == 1, weight));
+                spent += attempt(next_recipe(round));
             } catch (const geometry::Cancelled&) {
                 if (best_.heap.laid.empty()) {
                     throw;
@@ -124,23 +123,45 @@ public:
     }
 
 private:
-    std::int64_t attempt(const std::vector<std::size_t>& order, bool turned, double top_weight) {
+    // First every plain recipe, then the best one with a few shapes moved to other turns.
+    Recipe next_recipe(std::size_t round) {
+        constexpr std::array<double, 3> kTopWeights{0.0, 0.5, 0.25};
+        if (round < 2 * kTopWeights.size()) {
+            return {longest_first(shapes_), round % 2 == 1, kTopWeights[round / 2]};
+        }
+        Recipe recipe = best_.recipe;
+        const std::size_t count = recipe.order.size();
+        const std::size_t moves = 1 + random_() % 4;
+        const std::size_t reach = 1 + count / 4;
+        for (std::size_t i = 0; i < moves; ++i) {
+            const std::size_t from = random_() % count;
+            const std::size_t step = random_() % (2 * reach + 1);
+            const std::size_t to = std::min(count - 1, from + step - std::min(from + step, reach));
+            const std::size_t shape = recipe.order[from];
+            recipe.order.erase(recipe.order.begin() + static_cast<std::ptrdiff_t>(from));
+            recipe.order.insert(recipe.order.begin() + static_cast<std::ptrdiff_t>(to), shape);
+        }
+        return recipe;
+    }
+
+    std::int64_t attempt(Recipe recipe) {
         HeapOptions heap_options;
-        heap_options.extent = turned ? Eigen::Vector2d(extent_.y(), extent_.x()) : extent_;
+        heap_options.extent = recipe.turned ? Eigen::Vector2d(extent_.y(), extent_.x()) : extent_;
         heap_options.gap_mm = options_.spacing_mm + options_.kerf_mm;
         heap_options.cell_mm = cell_mm_;
-        heap_options.top_weight = top_weight;
+        heap_options.top_weight = recipe.top_weight;
         heap_options.allowed_deg = allowed_rotations(options_.rotation);
         for (double& angle : heap_options.allowed_deg) {
-            angle -= turned ? 90.0 : 0.0;
+            angle -= recipe.turned ? 90.0 : 0.0;
         }
-        Heap heap = build_heap(shapes_, order, heap_options, context_);
+        Heap heap = build_heap(shapes_, recipe.order, heap_options, context_);
         const std::int64_t evaluations = heap.evaluations;
         const double used = heap.sheets_used(heap_options.extent.y());
-        if (used < best_.used) {
-            best_ = {std::move(heap), used, turned};
+        // An equal one is taken too: a walk over a plateau may find its way down.
+        if (used <= best_.used) {
+            best_ = {std::move(heap), used, std::move(recipe)};
         }
-        return evaluations;
+        return std::max<std::int64_t>(1, evaluations);
     }
 
     const std::vector<NestShape>& shapes_;
@@ -155,7 +176,7 @@ private:
 // From the heap's frame, which may be turned by a quarter, to the sheet's.
 Pose on_sheet(const Pose& pose, const Best& best, const Eigen::Vector2d& extent, double edge_mm) {
     Pose out = pose;
-    if (best.turned) {
+    if (best.recipe.turned) {
         out.angle_deg += 90.0;
         out.offset = {extent.x() - pose.offset.y(), pose.offset.x()};
     }
