@@ -188,7 +188,7 @@ private:
 
 double Remesher::area() const {
     double sum = 0.0;
-    for (const auto face : mesh_.faces()) {
+    for (const Mesh::FaceHandle face : mesh_.faces()) {
         sum += mesh_.calc_face_area(face);
     }
     return sum;
@@ -197,22 +197,23 @@ double Remesher::area() const {
 void Remesher::split_long_edges(double longest) {
     const auto edges = static_cast<unsigned>(mesh_.n_edges());  // New ones wait for the next round.
     for (unsigned index = 0; index < edges; ++index) {
-        const auto edge = mesh_.edge_handle(index);
+        const Mesh::EdgeHandle edge = mesh_.edge_handle(index);
         if (length(edge) > longest) {
-            mesh_.split(edge, mesh_.add_vertex(mesh_.calc_edge_midpoint(edge)));
+            const Mesh::VertexHandle middle = mesh_.add_vertex(mesh_.calc_edge_midpoint(edge));
+            mesh_.split(edge, middle);
         }
     }
 }
 
 // Whether the half-edge's start may be merged into its end.
 bool Remesher::may_collapse(Mesh::HalfedgeHandle edge, double longest) {
-    const auto from = mesh_.from_vertex_handle(edge);
-    const auto to = mesh_.to_vertex_handle(edge);
+    const Mesh::VertexHandle from = mesh_.from_vertex_handle(edge);
+    const Mesh::VertexHandle to = mesh_.to_vertex_handle(edge);
     if (mesh_.is_boundary(from) && !mesh_.is_boundary(mesh_.edge_handle(edge))) {
         return false;
     }
     const Eigen::Vector3d target = mesh_.point(to);
-    for (const auto around : mesh_.voh_range(from)) {
+    for (const Mesh::HalfedgeHandle around : mesh_.voh_range(from)) {
         const auto a = mesh_.to_vertex_handle(around);
         if ((mesh_.point(a) - target).norm() > longest) {
             return false;
@@ -234,12 +235,12 @@ bool Remesher::may_collapse(Mesh::HalfedgeHandle edge, double longest) {
 }
 
 void Remesher::collapse_short_edges(double shortest, double longest) {
-    for (const auto edge : mesh_.all_edges()) {
+    for (const Mesh::EdgeHandle edge : mesh_.all_edges()) {
         if (mesh_.status(edge).deleted() || length(edge) >= shortest) {
             continue;
         }
         for (const unsigned side : {0U, 1U}) {
-            const auto half = mesh_.halfedge_handle(edge, side);
+            const Mesh::HalfedgeHandle half = mesh_.halfedge_handle(edge, side);
             if (may_collapse(half, longest)) {
                 mesh_.collapse(half);
                 break;
@@ -256,8 +257,8 @@ int Remesher::valence_error(Mesh::VertexHandle vertex, int change) const {
 }
 
 bool Remesher::flip_keeps_normals(Mesh::EdgeHandle edge) const {
-    const auto half = mesh_.halfedge_handle(edge, 0);
-    const auto other = mesh_.halfedge_handle(edge, 1);
+    const Mesh::HalfedgeHandle half = mesh_.halfedge_handle(edge, 0);
+    const Mesh::HalfedgeHandle other = mesh_.halfedge_handle(edge, 1);
     const Eigen::Vector3d a = mesh_.point(mesh_.from_vertex_handle(half));
     const Eigen::Vector3d b = mesh_.point(mesh_.to_vertex_handle(half));
     const Eigen::Vector3d c = mesh_.point(mesh_.opposite_vh(half));
@@ -267,11 +268,11 @@ bool Remesher::flip_keeps_normals(Mesh::EdgeHandle edge) const {
 }
 
 void Remesher::flip_towards_regular() {
-    for (const auto edge : mesh_.edges()) {
+    for (const Mesh::EdgeHandle edge : mesh_.edges()) {
         if (mesh_.is_boundary(edge) || !mesh_.is_flip_ok(edge)) {
             continue;
         }
-        const auto half = mesh_.halfedge_handle(edge, 0);
+        const Mesh::HalfedgeHandle half = mesh_.halfedge_handle(edge, 0);
         const std::array<Mesh::VertexHandle, 2> ends{mesh_.from_vertex_handle(half),
                                                      mesh_.to_vertex_handle(half)};
         const std::array<Mesh::VertexHandle, 2> tips{
@@ -294,7 +295,7 @@ Eigen::Vector3d Remesher::relaxed(Mesh::VertexHandle vertex) const {
     const bool on_boundary = mesh_.is_boundary(vertex);
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     double count = 0.0;
-    for (const auto around : mesh_.voh_range(vertex)) {
+    for (const Mesh::HalfedgeHandle around : mesh_.voh_range(vertex)) {
         if (!on_boundary || mesh_.is_boundary(mesh_.edge_handle(around))) {
             mean += mesh_.point(mesh_.to_vertex_handle(around));
             count += 1.0;
@@ -329,10 +330,10 @@ Eigen::Vector3d Remesher::projected(Eigen::Vector3d p, bool on_boundary) const {
 
 void Remesher::relax() {
     std::vector<Eigen::Vector3d> moved(mesh_.n_vertices());
-    for (const auto vertex : mesh_.vertices()) {
+    for (const Mesh::VertexHandle vertex : mesh_.vertices()) {
         moved[static_cast<std::size_t>(vertex.idx())] = relaxed(vertex);
     }
-    for (const auto vertex : mesh_.vertices()) {
+    for (const Mesh::VertexHandle vertex : mesh_.vertices()) {
         mesh_.set_point(vertex, projected(moved[static_cast<std::size_t>(vertex.idx())],
                                           mesh_.is_boundary(vertex)));
     }

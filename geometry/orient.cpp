@@ -94,7 +94,7 @@ double signed_volume(std::span<const Eigen::Vector3d> positions,
                      std::span<const Triangle> triangles,
                      const WindingWalk& walk,
                      const WindingWalk::Component& component) {
-    const Eigen::Vector3d origin = positions[triangles[component.faces[0]][0]];
+    const Eigen::Vector3d& origin = positions[triangles[component.faces[0]][0]];
     double volume = 0.0;
     for (const std::uint32_t face : component.faces) {
         const Eigen::Vector3d a = positions[triangles[face][0]] - origin;

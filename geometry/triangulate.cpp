@@ -19,7 +19,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 // area.
 std::vector<Eigen::Vector2d> flatten(std::span<const std::uint32_t> corners,
                                      std::span<const Eigen::Vector3d> positions) {
-    const Eigen::Vector3d origin = positions[corners[0]];
+    const Eigen::Vector3d& origin = positions[corners[0]];
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const Eigen::Vector3d a = positions[corners[i]] - origin;
