@@ -188,6 +188,7 @@ export const en = {
       'weave.json': 'Weave',
       'layout.json': 'Layout',
     } as Readonly<Record<string, string>>,
+    kinds: { svg: 'SVG', dxf: 'DXF', gcode: 'G-code' } as Readonly<Record<string, string>>,
     loading: 'Loading the files',
   },
 
