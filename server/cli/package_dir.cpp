@@ -1,5 +1,7 @@
 #include "server/cli/package_dir.h"
 
+#include <cstdio>
+#include <fcntl.h>
 #include <fstream>
 #include <system_error>
 #include <unistd.h>
