@@ -145,6 +145,7 @@ std::vector<double> smoothed(const std::vector<double>& values, bool closed) {
         return values[static_cast<std::size_t>(place)];
     };
     std::vector<double> result;
+    result.reserve(values.size());
     for (int i = 0; i < count; ++i) {
         result.push_back(0.25 * at(i - 1) + 0.5 * at(i) + 0.25 * at(i + 1));
     }
@@ -157,6 +158,7 @@ std::vector<double> densities(const SampledChart& chart,
                               const Rule& rule,
                               Spacing spacing) {
     std::vector<double> means;
+    means.reserve(static_cast<std::size_t>(chart.strips(axis)));
     for (int i = 0; i < chart.strips(axis); ++i) {
         means.push_back(leaf_mean(chart.strip(axis, i), rule.order, spacing));
     }

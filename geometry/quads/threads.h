@@ -1,7 +1,7 @@
 // The threads of a quad mesh: runs of cells along one family of leaves.
 //
-// A weft thread runs along F: it steps across the edges b–c and d–a. A warp thread runs along F*: it
-// steps across a–b and c–d. Every quad is in exactly one thread of each family.
+// A weft thread runs along F: it steps across the edges b–c and d–a. A warp thread runs along F*:
+// it steps across a–b and c–d. Every quad is in exactly one thread of each family.
 
 #pragma once
 
@@ -24,8 +24,8 @@ enum class ThreadEnds {
     Through,           // A thread goes on into the next cylinder where vertices are shared.
 };
 
-// All threads of a family, ordered by their smallest quad index. Follows shared edges only, so that any
-// grid topology works (twisted tori, conforming junctions).
+// All threads of a family, ordered by their smallest quad index. Follows shared edges only, so that
+// any grid topology works (twisted tori, conforming junctions).
 std::vector<Thread> trace_threads(const QuadMesh& mesh, Family family, ThreadEnds ends);
 
 }  // namespace leafcutter::geometry
