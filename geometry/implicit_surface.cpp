@@ -69,7 +69,9 @@ March::March(const ImplicitSurface& surface, double cell) : surface_(surface), c
 Eigen::Vector3d March::position(Node node) const {
     const auto columns = static_cast<Node>(nodes_.x());
     const auto rows = static_cast<Node>(nodes_.y());
-    const Eigen::Vector3d steps(node % columns, node / columns % rows, node / columns / rows);
+    const Node line = node / columns;
+    const Node layer = line / rows;
+    const Eigen::Vector3d steps(node % columns, line % rows, layer);
     return surface_.low + cell_ * steps;
 }
 
@@ -81,7 +83,8 @@ Mesh::VertexHandle March::crossing(Node inside, Node outside) {
         constexpr double kMargin = 0.05;
         const double share = std::clamp(values_[inside] / (values_[inside] - values_[outside]),
                                         kMargin, 1 - kMargin);
-        it->second = mesh_.add_vertex(position(inside) * (1 - share) + position(outside) * share);
+        const Eigen::Vector3d point = position(inside) * (1 - share) + position(outside) * share;
+        it->second = Mesh::VertexHandle(mesh_.add_vertex(point).idx());
     }
     return it->second;
 }
@@ -199,7 +202,7 @@ void Remesher::split_long_edges(double longest) {
     for (unsigned index = 0; index < edges; ++index) {
         const Mesh::EdgeHandle edge = mesh_.edge_handle(index);
         if (length(edge) > longest) {
-            const Mesh::VertexHandle middle = mesh_.add_vertex(mesh_.calc_edge_midpoint(edge));
+            const Mesh::VertexHandle middle(mesh_.add_vertex(mesh_.calc_edge_midpoint(edge)).idx());
             mesh_.split(edge, middle);
         }
     }
