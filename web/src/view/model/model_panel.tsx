@@ -7,7 +7,8 @@ import { chooseStrip, chosenStrip, type JobPackage, pointedStrip } from '../../s
 import { Panel, Segmented } from '../controls.tsx';
 import { StripPicker } from '../strip_picker.tsx';
 import { ZoomButtons } from '../zoom_buttons.tsx';
-import type { ModelScene, Palette, ViewMode } from './scene.ts';
+import type { Palette, ViewMode } from './model.ts';
+import type { ModelScene } from './scene.ts';
 
 const kModes: readonly ViewMode[] = ['woven', 'weft', 'warp', 'surface'];
 const kTurn = Math.PI / 24;

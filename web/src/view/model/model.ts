@@ -1,0 +1,124 @@
+// What is drawn: the ribbons of both families, the bare surface, and the strips that are marked.
+
+import {
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshLambertMaterial,
+  Sphere,
+} from 'three';
+
+import type { Family, QuadMesh } from '../../api/package_files.ts';
+import { buildRibbons } from '../../state/ribbons.ts';
+import type { StripIndex } from '../../state/strip_index.ts';
+import { edgeGeometry, quadsOf, ribbonGeometry, stepsFor, surfaceGeometry } from './geometry.ts';
+
+export type ViewMode = 'woven' | 'weft' | 'warp' | 'surface';
+
+export interface ModelContent {
+  readonly mesh: QuadMesh;
+  readonly warpOnTop: Uint8Array;
+  readonly index: StripIndex;
+}
+
+export interface Palette {
+  readonly weft: string;
+  readonly warp: string;
+  readonly surface: string;
+  readonly line: string;
+  readonly mark: string;
+}
+
+function marker(): Mesh<BufferGeometry, MeshLambertMaterial> {
+  const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 });
+  const mesh = new Mesh(new BufferGeometry(), material);
+  mesh.visible = false;
+  mesh.renderOrder = 1;
+  return mesh;
+}
+
+export class Model {
+  readonly root = new Group();
+  readonly surface: BufferGeometry;
+  readonly bounds: Sphere;
+  private readonly ribbons: Readonly<Record<Family, BufferGeometry>>;
+  private readonly parts: Readonly<Record<Family, Mesh<BufferGeometry, MeshLambertMaterial>>>;
+  private readonly skin: Mesh<BufferGeometry, MeshLambertMaterial>;
+  private readonly edges: LineSegments<BufferGeometry, LineBasicMaterial>;
+  private readonly pointed = marker();
+  private readonly chosen = marker();
+  // A geometry shares its vertices with what it marks, and freeing it would free those too: kept for each
+  // strip that was ever marked, which adds up to one more index of the ribbons at most.
+  private readonly marked = new Map<string, BufferGeometry>();
+  mode: ViewMode = 'woven';
+
+  constructor(private readonly content: ModelContent) {
+    const { mesh, warpOnTop } = content;
+    const steps = stepsFor(mesh.quadCount);
+    const ribbon = (family: Family): BufferGeometry => {
+      return ribbonGeometry(buildRibbons(mesh, warpOnTop, family, { steps }));
+    };
+    this.surface = surfaceGeometry(mesh);
+    this.bounds = this.surface.boundingSphere ?? new Sphere();
+    this.ribbons = { weft: ribbon('weft'), warp: ribbon('warp') };
+    const paper = (): MeshLambertMaterial => new MeshLambertMaterial({ side: DoubleSide, vertexColors: true });
+    this.parts = { weft: new Mesh(this.ribbons.weft, paper()), warp: new Mesh(this.ribbons.warp, paper()) };
+    const skin = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    this.skin = new Mesh(this.surface, skin);
+    this.edges = new LineSegments(edgeGeometry(mesh, this.surface), new LineBasicMaterial());
+    this.root.add(this.parts.weft, this.parts.warp, this.skin, this.edges, this.pointed, this.chosen);
+    this.show('woven');
+  }
+
+  show(mode: ViewMode): void {
+    this.mode = mode;
+    this.parts.weft.visible = mode === 'woven' || mode === 'weft';
+    this.parts.warp.visible = mode === 'woven' || mode === 'warp';
+    this.skin.visible = mode === 'surface';
+    this.edges.visible = mode === 'surface';
+  }
+
+  mark(pointed: string | null, chosen: string | null): void {
+    this.put(this.pointed, pointed === chosen ? null : pointed);
+    this.put(this.chosen, chosen);
+  }
+
+  private put(mesh: Mesh, id: string | null): void {
+    const strip = id === null ? undefined : this.content.index.strips.get(id);
+    mesh.visible = strip !== undefined;
+    if (strip === undefined) return;
+    const onSurface = this.mode === 'surface';
+    const key = `${onSurface ? 'surface' : 'ribbon'}/${strip.id}`;
+    const geometry = this.marked.get(key) ?? quadsOf(onSurface ? this.surface : this.ribbons[strip.family], strip.quads);
+    this.marked.set(key, geometry);
+    mesh.geometry = geometry;
+  }
+
+  paint(palette: Palette): void {
+    this.parts.weft.material.color.set(palette.weft);
+    this.parts.warp.material.color.set(palette.warp);
+    this.skin.material.color.set(palette.surface);
+    this.edges.material.color.set(palette.line);
+    this.chosen.material.color.set(palette.mark);
+    this.chosen.material.emissive.set(palette.mark).multiplyScalar(0.35);
+    this.pointed.material.color.set(palette.mark).lerp(new Color('#ffffff'), 0.35);
+  }
+
+  // Which of a quad's two strips is seen from `towards` (out of the surface or from behind).
+  stripOf(quad: number, outside: boolean): string | null {
+    const { index, warpOnTop } = this.content;
+    const warp = this.mode === 'warp' || (this.mode !== 'weft' && (warpOnTop[quad] === 1) === outside);
+    return (warp ? index.warpOfQuad[quad] : index.weftOfQuad[quad]) ?? null;
+  }
+
+  dispose(): void {
+    const own = [this.surface, this.ribbons.weft, this.ribbons.warp, this.edges.geometry];
+    for (const geometry of [...own, ...this.marked.values()]) geometry.dispose();
+    for (const mesh of [this.parts.weft, this.parts.warp, this.skin, this.pointed, this.chosen]) mesh.material.dispose();
+    this.edges.material.dispose();
+  }
+}

@@ -1,0 +1,91 @@
+// Camera, light and canvas: where the model stands and how it is looked at. Draws only when something
+// changed.
+
+import { AmbientLight, DirectionalLight, PerspectiveCamera, Scene, Sphere, Spherical, Vector3, WebGLRenderer } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+const kFieldDeg = 32;
+const kFromDirection = new Vector3(0.55, -0.95, 0.75).normalize();
+
+// Throws if the browser has no WebGL.
+export class Stage {
+  readonly scene = new Scene();
+  readonly camera = new PerspectiveCamera(kFieldDeg, 1, 0.1, 1000);
+  readonly renderer: WebGLRenderer;
+  readonly controls: OrbitControls;
+  private readonly resizing: ResizeObserver;
+  private frame = 0;
+
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly bounds: Sphere) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.camera.up.set(0, 0, 1);
+    const sun = new DirectionalLight('#ffffff', 2.2);
+    sun.position.set(-0.5, 0.8, 0.9);
+    this.camera.add(sun);
+    this.scene.add(new AmbientLight('#ffffff', 1.45), this.camera);
+    this.controls = new OrbitControls(this.camera, canvas);
+    // The wheel belongs to the page until the view was clicked or reached by keyboard.
+    this.controls.enableZoom = false;
+    canvas.addEventListener('focus', () => (this.controls.enableZoom = true));
+    canvas.addEventListener('blur', () => (this.controls.enableZoom = false));
+    this.controls.addEventListener('change', () => this.draw());
+    this.resizing = new ResizeObserver(() => this.resize());
+    this.resizing.observe(canvas);
+    this.resize();
+    this.reset();
+  }
+
+  draw(): void {
+    this.frame ||= requestAnimationFrame(() => {
+      this.frame = 0;
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  reset(): void {
+    const { center, radius } = this.bounds;
+    const half = Math.atan(Math.tan((kFieldDeg * Math.PI) / 360) * Math.min(1, this.camera.aspect));
+    const distance = (radius / Math.sin(half)) * 1.02;
+    this.camera.near = distance / 100;
+    this.camera.far = distance * 20;
+    this.camera.position.copy(center).addScaledVector(kFromDirection, distance);
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(center);
+    this.controls.minDistance = radius * 0.2;
+    this.controls.maxDistance = distance * 4;
+    this.controls.update();
+    this.draw();
+  }
+
+  // Moves the camera about the target; the pole points along the camera's up.
+  move(change: (around: Spherical) => void): void {
+    const { target } = this.controls;
+    const offset = this.camera.position.clone().sub(target);
+    // Spherical's pole is y: swap the axes there and back.
+    const around = new Spherical().setFromCartesianCoords(offset.y, offset.z, offset.x);
+    change(around);
+    around.makeSafe();
+    around.radius = Math.min(this.controls.maxDistance, Math.max(this.controls.minDistance, around.radius));
+    const moved = new Vector3().setFromSpherical(around);
+    this.camera.position.set(target.x + moved.z, target.y + moved.x, target.z + moved.y);
+    this.controls.update();
+    this.draw();
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.frame);
+    this.resizing.disconnect();
+    this.controls.dispose();
+    this.renderer.dispose();
+  }
+}
