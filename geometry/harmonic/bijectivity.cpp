@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "geometry/harmonic/limbs.h"
@@ -206,28 +207,44 @@ void solve_again(ChartMap& map,
     }
 }
 
+// Frees the vertices within `rings` rings of the triangles in `bad`, solves there, and keeps the
+// answer unless it is worse. Returns the triangles still bad.
+std::vector<int> repair_near(ChartMap& map,
+                             std::vector<int> bad,
+                             const std::vector<WeightedEdge>& edges,
+                             const std::vector<Rail>& rails,
+                             int rings) {
+    std::vector<char> held = held_but_near(map, bad, rings);
+    hold_rails(held, rails);
+    if (std::count(held.begin(), held.end(), 1) == 0) {
+        held.front() = 1;  // A torus without rails: one vertex stays.
+    }
+    std::vector<Eigen::Vector2d> before = map.gf;
+    solve_again(map, edges, held);
+    std::vector<int> left = bad_triangles(map);
+    if (left.size() > bad.size()) {
+        map.gf = std::move(before);
+        return bad;
+    }
+    return left;
+}
+
+// Tries the weights given, then equal ones, which spread the vertices of a heap of needles best,
+// near the flipped triangles and then ever farther from them.
 bool repair_locally(ChartMap& map,
                     const std::vector<WeightedEdge>& edges,
-                    const std::vector<Rail>& rails,
-                    FlipReport& report) {
+                    const std::vector<Rail>& rails) {
+    std::vector<WeightedEdge> equal = edges;
+    for (WeightedEdge& edge : equal) {
+        edge.weight = 1.0;
+    }
     std::vector<int> bad = bad_triangles(map);
     for (const int rings : kRings) {
-        if (bad.empty()) {
-            return true;
-        }
-        std::vector<char> held = held_but_near(map, bad, rings);
-        hold_rails(held, rails);
-        report.freed_vertices = static_cast<int>(std::count(held.begin(), held.end(), 0));
-        if (report.freed_vertices == static_cast<int>(held.size())) {
-            held.front() = 1;  // A torus without rails: one vertex stays.
-        }
-        std::vector<Eigen::Vector2d> before = map.gf;
-        solve_again(map, edges, held);
-        std::vector<int> left = bad_triangles(map);
-        if (left.size() > bad.size()) {
-            map.gf = std::move(before);
-        } else {
-            bad = std::move(left);
+        for (const std::vector<WeightedEdge>& weights : {std::cref(edges), std::cref(equal)}) {
+            if (bad.empty()) {
+                return true;
+            }
+            bad = repair_near(map, std::move(bad), weights, rails, rings);
         }
     }
     return bad.empty();
@@ -265,7 +282,7 @@ FlipReport make_bijective(ChartMap& map, const std::vector<Rail>& rails, const C
     }
     std::vector<WeightedEdge> edges = positive_edges(map.mesh, map.edges);
     report.opened_limbs = open_limbs(map, edges, rails);
-    if (repair_locally(map, edges, rails, report)) {
+    if (repair_locally(map, edges, rails)) {
         return report;
     }
     context.check();

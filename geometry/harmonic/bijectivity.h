@@ -31,7 +31,6 @@ struct Rail {
 
 struct FlipReport {
     int flipped_as_solved = 0;
-    int freed_vertices = 0;     // In the last local step.
     bool opened_limbs = false;  // Step 2 found some.
     bool whole_chart = false;   // Step 4 was needed.
 };
