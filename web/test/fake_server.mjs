@@ -101,6 +101,7 @@ const kRoutes = [
   ['GET', /^\/jobs\/([^/]+)\/artifacts\/(.+)$/, (d, [id, name], q, r) => sendArtifact(d, r, id, name)],
   ['POST', /^\/jobs\/([^/]+)\/cuts$/, async (d, [id], q, r) => sendJson(r, 201, d.view(d.addCut(id, await jsonOf(q))))],
   ['GET', /^\/cuts$/, (d, _, q, r) => sendJson(r, 200, { cuts: d.snapshot().cuts })],
+  ['GET', /^\/cuts\/([^/]+)$/, (d, [id], q, r) => sendJson(r, 200, d.view(d.cuts.get(id) ?? d.missing('cut', id)))],
   ['POST', /^\/cuts\/([^/]+)\/([a-z-]+)$/, async (d, [id, action], q, r) => sendJson(r, 200, d.view(d.commandCut(id, action, await jsonOf(q))))],
   ['GET', /^\/devices$/, (d, _, q, r) => sendJson(r, 200, { devices: d.snapshot().devices })],
   ['POST', /^\/devices\/([^/]+)\/commands$/, async (d, [id], q, r) => { d.commandDevice(id, await jsonOf(q)); sendJson(r, 202, {}); }],

@@ -40,6 +40,7 @@ async function send(method: string, path: string, body?: unknown): Promise<Respo
 
 export const listJobs = (): Promise<readonly Job[]> => read('/jobs?limit=200', listUnder('jobs', readJob));
 export const getJob = (id: string): Promise<Job> => read(`/jobs/${id}`, readJob);
+export const getCut = (id: string): Promise<Cut> => read(`/cuts/${id}`, readCut);
 export const listCuts = (): Promise<readonly Cut[]> => read('/cuts', listUnder('cuts', readCut));
 export const listDevices = (): Promise<readonly Device[]> =>
   read('/devices', listUnder('devices', readDevice));

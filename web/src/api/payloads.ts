@@ -117,6 +117,7 @@ export const readCut: Reader<Cut> = (value, path) => {
     programSha256: get('program_sha256', optional(text, '')),
     progress: get('progress', optional(readCutProgress, kNoProgress)),
     reason: get('reason', optional(text, '')),
+    version: get('version', optional(number, 0)),
     createdAt: get('created_at', optional(text, '')),
     actions: get('actions', optional(names, [])),
   };

@@ -69,6 +69,7 @@ export interface Cut {
   readonly programSha256: string;
   readonly progress: CutProgress;
   readonly reason: string;
+  readonly version: number;
   readonly createdAt: string;
   readonly actions: readonly string[];
 }

@@ -1,8 +1,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import type { Cut, Job } from '../api/types.ts';
-import { currentCut, kEmptyFeed, newestFirst, reduceFeed } from './feed.ts';
+import { readDevice } from '../api/payloads.ts';
+import type { Cut, Device, Job } from '../api/types.ts';
+import { currentCut, doubtfulAfter, kEmptyFeed, newestFirst, reduceFeed } from './feed.ts';
 
 function job(id: string, over: Partial<Job> = {}): Job {
   return {
@@ -25,9 +26,12 @@ function job(id: string, over: Partial<Job> = {}): Job {
 function cut(id: string, state: Cut['state'], createdAt: string): Cut {
   const progress = { linesTotal: 0, linesSent: 0, linesAcknowledged: 0, fraction: 0 };
   return {
-    id, state, createdAt, progress, job: 'a', device: 'sim', sheets: [1], sheet: 1, programSha256: '', reason: '', actions: [],
+    id, state, createdAt, progress, job: 'a', device: 'sim', sheets: [1], sheet: 1, programSha256: '', reason: '', version: 0, actions: [],
   };
 }
+
+const device = (state: string): Device =>
+  readDevice({ id: 'sim', name: 'Simulated laser', status: { state } }, '');
 
 test('a snapshot replaces all that was known', () => {
   const before = reduceFeed(kEmptyFeed, { type: 'job', seq: 1, job: job('a') });
@@ -55,6 +59,19 @@ test('a removed job is gone', () => {
 test('jobs are listed newest first', () => {
   const jobs = new Map([job('a'), job('bbb'), job('cc')].map((one) => [one.id, one]));
   assert.deepEqual(newestFirst(jobs).map((one) => one.id), ['bbb', 'cc', 'a']);
+});
+
+test('a machine that changes its state puts its open cuts in doubt, an ended one not', () => {
+  const cuts = [cut('c1', 'waiting', '1'), cut('c2', 'done', '2')];
+  const feed = reduceFeed(kEmptyFeed, { type: 'snapshot', seq: 1, jobs: [], cuts, devices: [device('run')] });
+  assert.deepEqual(doubtfulAfter(feed, { type: 'device', seq: null, device: device('idle') }).cuts, ['c1']);
+  assert.deepEqual(doubtfulAfter(feed, { type: 'device', seq: null, device: device('run') }).cuts, []);
+});
+
+test('a cut that changes its state puts its job in doubt, progress does not', () => {
+  const feed = reduceFeed(kEmptyFeed, { type: 'cut', seq: 1, cut: cut('c1', 'cutting', '1') });
+  assert.deepEqual(doubtfulAfter(feed, { type: 'cut', seq: 2, cut: cut('c1', 'done', '1') }).jobs, ['a']);
+  assert.deepEqual(doubtfulAfter(feed, { type: 'cut', seq: 2, cut: cut('c1', 'cutting', '1') }).jobs, []);
 });
 
 test('a running cut matters more than a later one that ended', () => {

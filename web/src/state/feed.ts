@@ -25,21 +25,23 @@ function without<T>(map: ReadonlyMap<string, T>, id: string): ReadonlyMap<string
   return rest;
 }
 
+type Versioned = { readonly id: string; readonly version: number };
+
 // An answer to a call may overtake or trail the event of the same change: the newer version stays.
-function isStale(feed: Feed, job: Job): boolean {
-  return job.version < (feed.jobs.get(job.id)?.version ?? 0);
+function isStale<T extends Versioned>(known: ReadonlyMap<string, T>, item: T): boolean {
+  return item.version < (known.get(item.id)?.version ?? 0);
 }
 
 export function reduceFeed(feed: Feed, event: FeedEvent): Feed {
   switch (event.type) {
     case 'job':
-      return isStale(feed, event.job) ? feed : { ...feed, jobs: withItem(feed.jobs, event.job) };
+      return isStale(feed.jobs, event.job) ? feed : { ...feed, jobs: withItem(feed.jobs, event.job) };
     case 'job-removed':
       return { ...feed, jobs: without(feed.jobs, event.id) };
     case 'cut-removed':
       return { ...feed, cuts: without(feed.cuts, event.id) };
     case 'cut':
-      return { ...feed, cuts: withItem(feed.cuts, event.cut) };
+      return isStale(feed.cuts, event.cut) ? feed : { ...feed, cuts: withItem(feed.cuts, event.cut) };
     case 'device':
       return { ...feed, devices: withItem(feed.devices, event.device) };
     case 'snapshot':
@@ -58,6 +60,26 @@ const kEnded = new Set(['done', 'aborted', 'failed', 'interrupted']);
 
 export function isOver(cut: Cut): boolean {
   return kEnded.has(cut.state);
+}
+
+export interface Doubtful {
+  readonly cuts: readonly string[];
+  readonly jobs: readonly string[];
+}
+
+// What may be done with a cut depends on its machine, and with a job on its cuts, but neither sends an
+// event of its own for that: these must be asked for again after `event` came upon `before`.
+export function doubtfulAfter(before: Feed, event: FeedEvent): Doubtful {
+  if (event.type === 'device') {
+    const { id, status } = event.device;
+    if (before.devices.get(id)?.status.state === status.state) return { cuts: [], jobs: [] };
+    const open = [...before.cuts.values()].filter((cut) => cut.device === id && !isOver(cut));
+    return { cuts: open.map((cut) => cut.id), jobs: [] };
+  }
+  if (event.type === 'cut' && before.cuts.get(event.cut.id)?.state !== event.cut.state) {
+    return { cuts: [], jobs: [event.cut.job] };
+  }
+  return { cuts: [], jobs: [] };
 }
 
 // The job's cut that matters now: one that is not over, else the last one.

@@ -3,14 +3,14 @@
 
 import { computed, signal } from '@preact/signals';
 
-import { listCuts, listDevices, listJobs, listMaterials } from '../api/client.ts';
+import { getCut, getJob, listCuts, listDevices, listJobs, listMaterials } from '../api/client.ts';
 import { Problem } from '../api/problem.ts';
 import { type EventStream, openEventStream } from '../api/event_stream.ts';
 import type { Device, FeedEvent, Material } from '../api/types.ts';
 import { t } from '../messages/messages.ts';
 import { type Connection, type ConnectionSignal, nextConnection, retryDelayMs } from './connection.ts';
 import { type Draft, type DraftAction, kNewDraft, reduceDraft } from './draft.ts';
-import { isConnected, kEmptyFeed, reduceFeed } from './feed.ts';
+import { type Doubtful, doubtfulAfter, isConnected, kEmptyFeed, reduceFeed } from './feed.ts';
 import { formatRoute, parseRoute, type Route } from './route.ts';
 
 export const feed = signal(kEmptyFeed);
@@ -64,8 +64,16 @@ export async function attempt(call: () => Promise<unknown>): Promise<boolean> {
   }
 }
 
+async function askAgain({ cuts, jobs }: Doubtful): Promise<void> {
+  for (const id of cuts) receive({ type: 'cut', seq: null, cut: await getCut(id) });
+  for (const id of jobs) receive({ type: 'job', seq: null, job: await getJob(id) });
+}
+
 export function receive(event: FeedEvent): void {
-  feed.value = reduceFeed(feed.value, event);
+  const before = feed.value;
+  feed.value = reduceFeed(before, event);
+  // What can't be had now comes with the next event.
+  askAgain(doubtfulAfter(before, event)).catch(() => undefined);
 }
 
 export function changeDraft(action: DraftAction): void {
