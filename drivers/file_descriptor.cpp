@@ -3,6 +3,7 @@
 #include <array>
 #include <cerrno>
 #include <poll.h>
+#include <sys/socket.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -65,9 +66,19 @@ std::string read_from(const FileDescriptor& file,
     lost(link, error_text(errno));
 }
 
+namespace {
+
+// A socket whose other end is gone must not kill the process with SIGPIPE.
+ssize_t write_some(const FileDescriptor& file, std::string_view bytes) {
+    const ssize_t sent = ::send(file.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    return sent < 0 && errno == ENOTSOCK ? ::write(file.get(), bytes.data(), bytes.size()) : sent;
+}
+
+}  // namespace
+
 void write_to(const FileDescriptor& file, std::string_view link, std::string_view bytes) {
     while (!bytes.empty()) {
-        const ssize_t count = ::write(file.get(), bytes.data(), bytes.size());
+        const ssize_t count = write_some(file, bytes);
         if (count >= 0) {
             bytes.remove_prefix(static_cast<std::size_t>(count));
             continue;

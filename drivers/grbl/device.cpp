@@ -166,11 +166,27 @@ void GrblDevice::run_once(milliseconds slice) {
             turn(std::clamp(left, milliseconds(0), kTurn));
         } while (clock_() < end);
     } catch (const LinkLost& lost) {
-        gone_ = true;
-        const std::lock_guard lock(mutex_);
-        session_.lose_link(lost.what());
-        throw;
+        end_link(lost.what());
     }
+}
+
+void GrblDevice::end_link(std::string reason) {
+    gone_ = true;
+    try {
+        // A controller that only fell silent may still hear; its beam must not outlive us.
+        transport_->write_all("\x18");
+    } catch (const LinkLost&) {
+        gone_ = true;  // Nobody hears any more.
+    }
+    const std::string link = transport_->description();
+    if (reason.find(link) == std::string::npos) {
+        reason = link + ": " + reason;
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        session_.lose_link(reason);
+    }
+    throw LinkLost(reason);
 }
 
 }  // namespace leafcutter::drivers

@@ -49,6 +49,7 @@ private:
     void turn(std::chrono::milliseconds wait);
     void write_output();
     void close();
+    [[noreturn]] void end_link(std::string reason);
 
     std::string uri_;
     std::unique_ptr<Transport> transport_;  // Of the owner thread alone.

@@ -228,7 +228,7 @@ void GcodeInterpreter::execute(Block& block, const Rules& rules, std::vector<Act
 // that moves carries its S along instead.
 void GcodeInterpreter::execute_beam(const Block& block,
                                     const Rules& rules,
-                                    std::vector<Action>& actions) {
+                                    std::vector<Action>& actions) const {
     const bool dark = rules.laser_mode && !is_burning_motion(block.modal.motion);
     const bool in_motion = rules.laser_mode && block.moves();
     const bool was_burning = is_burning_motion(modal_.motion);
@@ -255,49 +255,44 @@ void GcodeInterpreter::execute_axes(Block& block,
                                     const Rules& rules,
                                     std::vector<Action>& actions) {
     const int code = block.non_modal.value_or(0);
-    const auto set_given = [&](Axes& to, const Axes& from) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            to[axis] = block.axis_given[axis] ? from[axis] : to[axis];
-        }
-    };
-    if (code == 10) {
-        const int system = *block.p == 0.0 ? modal_.coordinates : 53 + static_cast<int>(*block.p);
-        Axes wanted = block.axes;
-        if (*block.l == 20.0) {
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                wanted[axis] = position_mm_[axis] - g92_mm_[axis] - block.axes[axis];
-            }
-        }
-        set_given(coordinates_.at(system), wanted);
-        actions.push_back({.kind = Action::Kind::Offset, .move = {}});
-    } else if (code == 28 || code == 30) {
+    if (code == 28 || code == 30) {
+        Block rapid = block;
+        rapid.modal.motion = Motion::Rapid;
         if (block.any_axis()) {
-            Block waypoint = block;
-            waypoint.modal.motion = Motion::Rapid;
-            add_line(waypoint, rules, block.target_mm, actions);
+            add_line(rapid, rules, block.target_mm, actions);
         }
-        Block there = block;
-        there.modal.motion = Motion::Rapid;
-        add_line(there, rules, code == 28 ? g28_mm_ : g30_mm_, actions);
+        add_line(rapid, rules, code == 28 ? g28_mm_ : g30_mm_, actions);
     } else if (code == 281) {
         g28_mm_ = position_mm_;
     } else if (code == 301) {
         g30_mm_ = position_mm_;
-    } else if (code == 92) {
-        const Axes& system = coordinates_.at(modal_.coordinates);
-        Axes wanted{};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            wanted[axis] = position_mm_[axis] - system[axis] - block.axes[axis];
-        }
-        set_given(g92_mm_, wanted);
-        actions.push_back({.kind = Action::Kind::Offset, .move = {}});
-    } else if (code == 921) {
-        g92_mm_ = Axes{};
+    } else if (code == 10 || code == 92 || code == 921) {
+        set_offsets(block);
         actions.push_back({.kind = Action::Kind::Offset, .move = {}});
     } else if (block.moves()) {
         const bool arc =
             block.modal.motion == Motion::ArcCw || block.modal.motion == Motion::ArcCcw;
         arc ? add_arc(block, rules, actions) : add_line(block, rules, block.target_mm, actions);
+    }
+}
+
+// G10 L2 and L20, G92, G92.1.
+void GcodeInterpreter::set_offsets(const Block& block) {
+    if (block.non_modal == 921) {
+        g92_mm_ = Axes{};
+        return;
+    }
+    const bool stored = block.non_modal == 10;
+    const bool from_here = !stored || *block.l == 20.0;
+    const int system =
+        stored && *block.p != 0.0 ? 53 + static_cast<int>(*block.p) : modal_.coordinates;
+    Axes& offset = stored ? coordinates_.at(system) : g92_mm_;
+    const Axes& other = stored ? g92_mm_ : coordinates_.at(modal_.coordinates);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (block.axis_given[axis]) {
+            offset[axis] =
+                from_here ? position_mm_[axis] - other[axis] - block.axes[axis] : block.axes[axis];
+        }
     }
 }
 

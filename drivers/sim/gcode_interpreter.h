@@ -88,7 +88,8 @@ private:
     int check_arc(Block& block) const;
     void resolve_target(Block& block) const;
     void execute(Block& block, const Rules& rules, std::vector<Action>& actions);
-    void execute_beam(const Block& block, const Rules& rules, std::vector<Action>& actions);
+    void execute_beam(const Block& block, const Rules& rules, std::vector<Action>& actions) const;
+    void set_offsets(const Block& block);
     void execute_axes(Block& block, const Rules& rules, std::vector<Action>& actions);
     void add_line(const Block& block,
                   const Rules& rules,

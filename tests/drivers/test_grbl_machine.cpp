@@ -259,6 +259,13 @@ TEST(GrblMachine, JogsAndCancelsAJog) {
     EXPECT_NEAR(machine.position_mm()[0], stopped_at + 1.0, 0.005);
 }
 
+TEST(GrblMachine, EndsAJogThatGoesNowhere) {
+    Machine machine;
+    machine.say("$J=G91X0F100");
+    machine.settle();
+    EXPECT_EQ(machine.state(), GrblMachine::State::Idle);
+}
+
 TEST(GrblMachine, ReportsBuffersOffsetsAndOverridesAsAsked) {
     Machine machine;
     EXPECT_THAT(machine.feed("?"), HasSubstr("|WCO:0.000,0.000,0.000>"));
