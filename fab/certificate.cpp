@@ -136,13 +136,8 @@ public:
         }
     }
 
-    void add_sheet(const Sheet& sheet, const CutProgram& plan, const std::string& gcode) {
+    void add_sheet(const Sheet& sheet, const std::string& gcode) {
         const std::vector<BurntSegment> burnt = burnt_segments(gcode);
-        const BurnAudit audit = audit_burn(plan, burnt);
-        certificate_.largest_burn_deviation_mm =
-            std::max(certificate_.largest_burn_deviation_mm, audit.largest_deviation_mm);
-        certificate_.largest_burn_gap_mm =
-            std::max(certificate_.largest_burn_gap_mm, audit.largest_gap_mm);
         const std::vector<Ring> contours = closed_contours(burnt);
         std::vector<Bounds> bounds;
         for (const Ring& contour : contours) {
@@ -237,7 +232,7 @@ private:
 Certificate certify(const JobResult& job, std::span<const std::string> gcode) {
     Certifier certifier(job);
     for (std::size_t i = 0; i < job.layout.sheets.size(); ++i) {
-        certifier.add_sheet(job.layout.sheets[i], job.programs[i], gcode[i]);
+        certifier.add_sheet(job.layout.sheets[i], gcode[i]);
     }
     return certifier.result();
 }

@@ -31,8 +31,6 @@ struct InputFacts {
 struct Certificate {
     double largest_deviation_relative = 0.0;
     double largest_deviation_mm = 0.0;
-    double largest_burn_deviation_mm = 0.0;  // Of any burnt point from the nearest planned path.
-    double largest_burn_gap_mm = 0.0;        // Of any planned point from the nearest burn.
     int edges_compared = 0;
 };
 

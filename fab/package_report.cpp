@@ -201,9 +201,7 @@ json cut_json(const JobResult& job) {
 json certificate_json(const Certificate& certificate) {
     return {{"largest_deviation_relative", certificate.largest_deviation_relative},
             {"largest_deviation_mm", certificate.largest_deviation_mm},
-            {"edges_compared", certificate.edges_compared},
-            {"largest_burn_deviation_mm", certificate.largest_burn_deviation_mm},
-            {"largest_burn_gap_mm", certificate.largest_burn_gap_mm}};
+            {"edges_compared", certificate.edges_compared}};
 }
 
 // A number that is none is a mistake of ours; JSON would hide it as null.

@@ -1,0 +1,200 @@
+#include <cstring>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fab/pipeline.h"
+#include "fab/utf8.h"
+#include "fab/warnings.h"
+#include "geometry/error.h"
+#include "geometry/io/mesh_writer.h"
+
+namespace leafcutter::fab {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+// A wavy sheet of n x n squares, each cut in two; side 1.
+std::string wavy_sheet(int n) {
+    geometry::TriangleMesh mesh;
+    for (int i = 0; i <= n; ++i) {
+        for (int j = 0; j <= n; ++j) {
+            const double x = double(j) / n;
+            const double y = double(i) / n;
+            mesh.positions.emplace_back(x, y, 0.1 * std::sin(3.0 * x) * std::cos(2.0 * y));
+        }
+    }
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+            const int a = i * (n + 1) + j;
+            mesh.triangles.push_back({a, a + 1, a + n + 2});
+            mesh.triangles.push_back({a, a + n + 2, a + n + 1});
+        }
+    }
+    return geometry::write_obj(mesh);
+}
+
+JobParams small_job() {
+    JobParams params;
+    params.scale.longest_side_mm = 80.0;
+    params.nesting.time_s = 0.01;
+    return params;
+}
+
+PackageSummary weave_text(const std::string& text,
+                          const JobParams& params,
+                          const std::string& name = "sheet.obj",
+                          const geometry::Context& context = {}) {
+    const std::span<const char> letters(text.data(), text.size());
+    return weave({name, std::as_bytes(letters)}, params, {built_in_materials(), {}}, context);
+}
+
+// The number behind `"key":` in JSON text, the first one after `from`.
+double number_behind(const std::string& json, const std::string& key, std::size_t from = 0) {
+    const std::size_t at = json.find("\"" + key + "\":", from);
+    EXPECT_NE(at, std::string::npos) << key;
+    return std::stod(json.substr(at + key.size() + 3));
+}
+
+std::string refusal(const JobParams& params) {
+    try {
+        weave_text(wavy_sheet(10), params);
+    } catch (const geometry::Error& error) {
+        EXPECT_EQ(error.kind(), geometry::ErrorKind::BadOption);
+        return error.what();
+    }
+    return {};
+}
+
+TEST(Weave, WritesEveryFileOfThePackage) {
+    const PackageSummary made = weave_text(wavy_sheet(20), small_job());
+    std::vector<std::string> names;
+    for (const PackageFile& file : made.package.files) {
+        names.push_back(file.path);
+        EXPECT_FALSE(file.bytes.empty()) << file.path;
+    }
+    for (const char* name :
+         {"report.json", "surface.ply", "quads.obj", "leaves.json", "strips.json", "weave.json",
+          "layout.json", "guide.html", "sheets/sheet-001.svg", "sheets/sheet-001.dxf",
+          "sheets/sheet-001.gcode"}) {
+        EXPECT_THAT(names, Contains(name));
+    }
+    EXPECT_EQ(names.size(), 8U + 3U * static_cast<std::size_t>(made.sheets));
+    EXPECT_EQ(made.strips, made.pieces);
+    EXPECT_GT(made.quads, 40);
+    EXPECT_GT(made.estimated_s, 0.0);
+}
+
+TEST(Weave, CertifiesWhatTheBeamCuts) {
+    const PackageSummary made = weave_text(wavy_sheet(20), small_job());
+    const std::string& report = made.package.find("report.json")->bytes;
+    EXPECT_LT(number_behind(report, "largest_deviation_relative"), 1e-3);
+    EXPECT_EQ(number_behind(report, "edges_compared"), 8.0 * made.quads);
+}
+
+TEST(Weave, ScalesTheLongestSide) {
+    const std::string report =
+        weave_text(wavy_sheet(12), small_job()).package.find("report.json")->bytes;
+    EXPECT_NEAR(number_behind(report, "scale"), 80.0, 1e-9);
+    JobParams as_is = small_job();
+    as_is.scale.longest_side_mm.reset();
+    as_is.grid.strip_width_mm = 0.2;
+    as_is.fit.labels = false;
+    EXPECT_EQ(number_behind(weave_text(wavy_sheet(12), as_is).package.find("report.json")->bytes,
+                            "scale"),
+              1.0);
+}
+
+TEST(Weave, GivesEqualPackagesForEqualInput) {
+    const PackageSummary one = weave_text(wavy_sheet(12), small_job());
+    const PackageSummary two = weave_text(wavy_sheet(12), small_job());
+    ASSERT_EQ(one.package.files.size(), two.package.files.size());
+    for (std::size_t i = 0; i < one.package.files.size(); ++i) {
+        EXPECT_EQ(one.package.files[i].bytes, two.package.files[i].bytes)
+            << one.package.files[i].path;
+    }
+}
+
+TEST(Weave, PutsBothFamiliesOnOneSheetWhereTheyShareTheMaterial) {
+    JobParams params = small_job();
+    EXPECT_EQ(weave_text(wavy_sheet(12), params).sheets, 2);
+    params.material.warp = params.material.weft;
+    const PackageSummary made = weave_text(wavy_sheet(12), params);
+    EXPECT_EQ(made.sheets, 1);
+    EXPECT_THAT(made.package.find("layout.json")->bytes, HasSubstr("\"family\":\"both\""));
+}
+
+TEST(Weave, RefusesUnknownMaterialsByTheirPath) {
+    JobParams params = small_job();
+    params.material.warp = "cheese";
+    EXPECT_EQ(refusal(params), "material.warp: there is no material cheese");
+}
+
+TEST(Weave, RefusesMarginsThatLeaveNoSheet) {
+    JobParams params = small_job();
+    params.nesting.margin_mm = 200.0;
+    EXPECT_THAT(refusal(params), StartsWith("nesting.margin_mm: "));
+}
+
+TEST(Weave, RefusesCornersThatTheFileHasNot) {
+    JobParams params = small_job();
+    params.foliation.corners = {0, 10, 120, 4711};
+    EXPECT_THAT(refusal(params), StartsWith("foliation.corners[3]: the model has no vertex 4711"));
+}
+
+TEST(Weave, EscapesTheFileNameInTheGuide) {
+    const PackageSummary made =
+        weave_text(wavy_sheet(12), small_job(), "<script>alert(1)</script>\xff & \"x\".obj");
+    const std::string& guide = made.package.find("guide.html")->bytes;
+    EXPECT_EQ(guide.find("<script"), std::string::npos);
+    EXPECT_THAT(guide, HasSubstr("&lt;script&gt;alert(1)&lt;/script&gt;\xEF\xBF\xBD &amp;"));
+    EXPECT_EQ(valid_utf8(made.package.find("report.json")->bytes),
+              made.package.find("report.json")->bytes);
+}
+
+TEST(Weave, StopsWhenAsked) {
+    std::stop_source stop;
+    geometry::Context context;
+    context.stop = stop.get_token();
+    std::string stopped_in;
+    context.progress = [&](std::string_view stage, double) {
+        if (stage == "strips") {
+            stopped_in = stage;
+            stop.request_stop();
+        }
+    };
+    EXPECT_THROW(weave_text(wavy_sheet(12), small_job(), "sheet.obj", context),
+                 geometry::Cancelled);
+    EXPECT_EQ(stopped_in, "strips");
+}
+
+TEST(Weave, TellsProgressThatNeverFallsAndEndsAtOne) {
+    geometry::Context context;
+    std::vector<double> told;
+    context.progress = [&](std::string_view, double fraction) { told.push_back(fraction); };
+    weave_text(wavy_sheet(12), small_job(), "sheet.obj", context);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_EQ(told.back(), 1.0);
+}
+
+TEST(ValidUtf8, ReplacesExactlyWhatIsInvalid) {
+    EXPECT_EQ(valid_utf8("Blatt-\xC3\xBC \xE2\x82\xAC \xF0\x9F\x8D\x83"),
+              "Blatt-\xC3\xBC \xE2\x82\xAC \xF0\x9F\x8D\x83");
+    EXPECT_EQ(valid_utf8("a\xffz"), "a\xEF\xBF\xBDz");
+    EXPECT_EQ(valid_utf8("\xC0\xAF"), "\xEF\xBF\xBD\xEF\xBF\xBD");
+    EXPECT_EQ(valid_utf8("\xED\xA0\x80").find("\xED"), std::string::npos);
+    EXPECT_EQ(valid_utf8("\xE2\x82"), "\xEF\xBF\xBD\xEF\xBF\xBD");
+}
+
+TEST(JoinedWarnings, SayTheSameOnce) {
+    EXPECT_EQ(joined_warnings({"W1: thin", "the surface is odd", "W2: thin", "P1: bent"}),
+              (std::vector<std::string>{"W1, W2: thin", "the surface is odd", "P1: bent"}));
+}
+
+}  // namespace
+}  // namespace leafcutter::fab
