@@ -29,11 +29,16 @@ extern "C" void write_to_pipe(int /*number*/) {
 // A stop request runs callbacks and wakes waiters, which no handler may do: done by a thread of its
 // own.
 void forward(int pipe, std::stop_source source) {
+    // Reads on after a signal: the end is written to a pipe that must still have its reader.
     char what = 0;
-    while (read(pipe, &what, 1) < 0 && errno == EINTR) {
-    }
-    if (what == kSignalled) {
-        source.request_stop();
+    while (what != kEnd) {
+        const ssize_t got = read(pipe, &what, 1);
+        if (got == 0 || (got < 0 && errno != EINTR)) {
+            break;
+        }
+        if (got == 1 && what == kSignalled) {
+            source.request_stop();
+        }
     }
     close(pipe);
 }
