@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 
 namespace leafcutter::fab {
 
@@ -53,19 +54,18 @@ void add_inner_cells(const Ring& ring, double cell_mm, std::vector<Stencil::Cell
     }
 }
 
-// Reorders so that every prefix is spread evenly: strides of the golden section.
+// Reorders so that every prefix is spread evenly: steps of about the golden section of the length.
 std::vector<Stencil::Cell> spread(const std::vector<Stencil::Cell>& cells) {
     const std::size_t count = cells.size();
-    std::vector<std::pair<double, std::size_t>> keys(count);
     constexpr double kGolden = 0.6180339887498949;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double turn = kGolden * static_cast<double>(i);
-        keys[i] = {turn - std::floor(turn), i};
+    std::size_t step =
+        std::max<std::size_t>(1, static_cast<std::size_t>(kGolden * static_cast<double>(count)));
+    while (std::gcd(step, count) != 1) {
+        ++step;
     }
-    std::sort(keys.begin(), keys.end());
     std::vector<Stencil::Cell> out(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        out[keys[i].second] = cells[i];
+    for (std::size_t i = 0, at = 0; i < count; ++i, at = (at + step) % count) {
+        out[i] = cells[at];
     }
     return out;
 }
@@ -76,13 +76,9 @@ Stencil make_stencil(const Ring& ring, double cell_mm) {
     Stencil stencil;
     add_boundary_cells(ring, cell_mm, stencil.cells);
     add_inner_cells(ring, cell_mm, stencil.cells);
-    const auto before = [](const Stencil::Cell& a, const Stencil::Cell& b) {
-        return a.x != b.x ? a.x < b.x : a.y < b.y;
-    };
     const auto same = [](const Stencil::Cell& a, const Stencil::Cell& b) {
         return a.x == b.x && a.y == b.y;
     };
-    std::sort(stencil.cells.begin(), stencil.cells.end(), before);
     stencil.cells.erase(std::unique(stencil.cells.begin(), stencil.cells.end(), same),
                         stencil.cells.end());
     for (const Stencil::Cell& cell : stencil.cells) {
