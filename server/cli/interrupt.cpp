@@ -50,6 +50,7 @@ InterruptWatch::InterruptWatch() {
     if (pipe2(ends.data(), O_CLOEXEC) != 0) {
         throw std::system_error(errno, std::generic_category(), "pipe");
     }
+    listen_ = ends[0];
     wake_ = ends[1];
     pipe_of_handler = wake_;
     thread_ = std::jthread(forward, ends[0], source_);
@@ -67,6 +68,7 @@ InterruptWatch::~InterruptWatch() {
     [[maybe_unused]] const ssize_t written = write(wake_, &kEnd, 1);
     thread_.join();
     close(wake_);
+    close(listen_);
 }
 
 }  // namespace leafcutter::server

@@ -23,7 +23,8 @@ private:
     std::stop_source source_;
     struct sigaction before_int_ {};
     struct sigaction before_term_ {};
-    int wake_ = -1;  // Writing end of the pipe that the handler writes to.
+    int listen_ = -1;  // Reading end of the same pipe, open until the thread has ended.
+    int wake_ = -1;    // Writing end of the pipe that the handler writes to.
     std::jthread thread_;
 };
 
