@@ -204,43 +204,52 @@ bool uses_axes(int g_code) {
     return g_code == 100 || g_code == 280 || g_code == 300 || g_code == 920 || g_code == 431;
 }
 
+struct GroupsUsed {
+    std::set<Group> groups;
+    int axis_commands = 0;
+};
+
+// A G or M word. Returns Grbl's error, 0 for none.
+int apply_command(const GcodeWord& word, GcodeInterpreter::Block& block, GroupsUsed& used) {
+    const bool general = word.letter == 'G';
+    if (!general && word.value != std::floor(word.value)) {
+        return grbl_error::kNotInteger;
+    }
+    if (word.value < 0.0 || !has_known_fraction(word.value)) {
+        return grbl_error::kUnsupported;
+    }
+    const int code = general ? tenths(word.value) : static_cast<int>(word.value);
+    const std::optional<Group> group = general ? group_of_g(code) : group_of_m(code);
+    if (!group) {
+        return grbl_error::kUnsupported;
+    }
+    const bool moves = *group == Group::Motion && code != 800;
+    used.axis_commands += general && (uses_axes(code) || moves) ? 1 : 0;
+    if (used.axis_commands > 1) {
+        return grbl_error::kAxisConflict;
+    }
+    if (!used.groups.insert(*group).second) {
+        return grbl_error::kModalGroup;
+    }
+    if (general) {
+        apply_g(code, *group, block);
+    } else {
+        apply_m(code, *group, block);
+    }
+    return 0;
+}
+
 }  // namespace
 
 int GcodeInterpreter::read_words(std::string_view stripped, Block& block) const {
     block.modal = modal_;
     const GcodeWords words = split_words(stripped);
-    std::set<Group> groups;
-    int axis_commands = 0;
+    GroupsUsed used;
     for (const GcodeWord& word : words.words) {
-        if (word.letter != 'G' && word.letter != 'M') {
-            if (const int error = apply_value(word, block)) {
-                return error;
-            }
-            continue;
-        }
-        const bool general = word.letter == 'G';
-        if (word.value < 0.0 || !has_known_fraction(word.value) ||
-            (!general && word.value != std::floor(word.value))) {
-            return general ? grbl_error::kUnsupported : grbl_error::kNotInteger;
-        }
-        const int code = general ? tenths(word.value) : static_cast<int>(word.value);
-        const std::optional<Group> group = general ? group_of_g(code) : group_of_m(code);
-        if (!group) {
-            return grbl_error::kUnsupported;
-        }
-        const bool axis_command =
-            general && (uses_axes(code) || (*group == Group::Motion && code != 800));
-        axis_commands += axis_command ? 1 : 0;
-        if (axis_commands > 1) {
-            return grbl_error::kAxisConflict;
-        }
-        if (!groups.insert(*group).second) {
-            return grbl_error::kModalGroup;
-        }
-        if (general) {
-            apply_g(code, *group, block);
-        } else {
-            apply_m(code, *group, block);
+        const bool command = word.letter == 'G' || word.letter == 'M';
+        if (const int error =
+                command ? apply_command(word, block, used) : apply_value(word, block)) {
+            return error;
         }
     }
     if (words.fault) {
