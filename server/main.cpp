@@ -15,6 +15,13 @@ int main(int argc, char** argv) {
     app.fallthrough();
     add_inspect_command(app, common);
     add_sample_command(app, common);
+    add_weave_command(app, common);
+    add_serve_command(app, common);
+    add_submit_command(app, common);
+    add_send_command(app, common);
+    add_simulate_command(app, common);
+    add_devices_command(app, common);
+    add_audit_command(app, common);
 
     try {
         app.parse(argc, argv);

@@ -1,0 +1,87 @@
+// leafcutter serve: the daemon.
+
+#include <condition_variable>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "drivers/device.h"
+#include "server/app.h"
+#include "server/cli/command.h"
+#include "server/cli/interrupt.h"
+#include "server/weave_compute.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+struct ServeOptions {
+    std::string config;
+    std::string listen;
+    std::string state;
+};
+
+Config wanted_config(const ServeOptions& options) {
+    try {
+        Config config = options.config.empty() ? Config{} : read_config(options.config);
+        if (!options.listen.empty()) {
+            config.listen = parse_listen(options.listen);
+        }
+        if (!options.state.empty()) {
+            config.state = options.state;
+        }
+        if (config.state.empty()) {
+            config.state = default_state_dir();
+        }
+        return config;
+    } catch (const BadConfig& error) {
+        throw UsageError(error.what());
+    }
+}
+
+void wait_for_stop(const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any never;
+    std::unique_lock lock(mutex);
+    never.wait(lock, stop, [] { return false; });
+}
+
+void serve(const ServeOptions& options) {
+    std::signal(SIGPIPE, SIG_IGN);
+    const InterruptWatch interrupt;
+    const Config config = wanted_config(options);
+    spdlog::set_default_logger(spdlog::stderr_color_mt("leafcutter"));
+    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+    AppParts parts;
+    parts.compute = weave_job;
+    parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
+    parts.check_params = check_job_params;
+    App app(config, std::move(parts));
+    const bool v6 = config.listen.address.find(':') != std::string::npos;
+    const std::string address = v6 ? "[" + config.listen.address + "]" : config.listen.address;
+    std::printf("leafcutter: http://%s:%d/\n", address.c_str(), app.port());
+    std::fflush(stdout);
+    spdlog::info("state in {}", config.state.string());
+    wait_for_stop(interrupt.token());
+    spdlog::info("stopping");
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& app, const CommonOptions&) {
+    CLI::App* command =
+        app.add_subcommand("serve", "The daemon: REST, dashboard, job queue, machines");
+    const auto options = std::make_shared<ServeOptions>();  // Shared with the callback.
+    command->add_option("--config", options->config, "TOML file")->check(CLI::ExistingFile);
+    command->add_option("--listen", options->listen, "ADDRESS:PORT; 127.0.0.1:8080 if not given");
+    command->add_option("--state", options->state, "Folder of the database and the files");
+    command->callback([options] { serve(*options); });
+}
+
+}  // namespace leafcutter::server

@@ -1,0 +1,193 @@
+#include "server/config.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+namespace leafcutter::server {
+
+namespace {
+
+[[noreturn]] void fail(const toml::source_region& where, const std::string& what) {
+    const std::string file = where.path ? *where.path : std::string("configuration");
+    throw BadConfig(fmt::format("{}:{}: {}", file, where.begin.line, what));
+}
+
+template <typename T>
+T value_of(const toml::node& node, const std::string& key, const char* kind) {
+    const auto value = node.value_exact<T>();
+    if (!value) {
+        fail(node.source(), fmt::format("{}: must be {}", key, kind));
+    }
+    return *value;
+}
+
+unsigned count_of(const toml::node& node, const std::string& key) {
+    const auto value = value_of<std::int64_t>(node, key, "a whole number");
+    constexpr std::int64_t kMost = 256;
+    if (value < 1 || value > kMost) {
+        fail(node.source(), key + ": must be 1 to 256");
+    }
+    return static_cast<unsigned>(value);
+}
+
+std::array<double, 2> bed_of(const toml::node& node) {
+    const toml::array* sides = node.as_array();
+    std::array<double, 2> bed{};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto side =
+            sides != nullptr && sides->size() == 2 ? (*sides)[i].value<double>() : std::nullopt;
+        if (!side) {
+            fail(node.source(), "bed_mm: must be [width, height]");
+        }
+        bed.at(i) = *side;
+    }
+    return bed;
+}
+
+DeviceRecord device_of(const toml::table& table) {
+    DeviceRecord device;
+    for (const auto& [key, node] : table) {
+        if (key == "id") {
+            device.id = value_of<std::string>(node, "id", "a string");
+        } else if (key == "name") {
+            device.name = value_of<std::string>(node, "name", "a string");
+        } else if (key == "uri") {
+            device.uri = value_of<std::string>(node, "uri", "a string");
+        } else if (key == "auto_start") {
+            device.auto_start = value_of<bool>(node, "auto_start", "true or false");
+        } else if (key == "bed_mm") {
+            device.bed_mm = bed_of(node);
+        } else {
+            fail(node.source(), fmt::format("device.{}: there is no such key", key.str()));
+        }
+    }
+    device.name = device.name.empty() ? device.id : device.name;
+    check_device(device);
+    return device;
+}
+
+void read_devices(const toml::node& node, Config& config) {
+    const toml::array* devices = node.as_array();
+    if (devices == nullptr) {
+        fail(node.source(), "device: must be written as [[device]]");
+    }
+    for (const toml::node& each : *devices) {
+        const toml::table* table = each.as_table();
+        if (table == nullptr) {
+            fail(each.source(), "device: must be a table");
+        }
+        config.devices.push_back(device_of(*table));
+    }
+}
+
+void read_hosts(const toml::node& node, Config& config) {
+    const toml::array* hosts = node.as_array();
+    if (hosts == nullptr) {
+        fail(node.source(), "hosts: must be a list of names");
+    }
+    for (const toml::node& host : *hosts) {
+        config.hosts.push_back(value_of<std::string>(host, "hosts", "a list of names"));
+    }
+}
+
+void read_key(std::string_view key, const toml::node& node, Config& config) {
+    if (key == "listen") {
+        config.listen = parse_listen(value_of<std::string>(node, "listen", "a string"));
+    } else if (key == "state") {
+        config.state = value_of<std::string>(node, "state", "a string");
+    } else if (key == "hosts") {
+        read_hosts(node, config);
+    } else if (key == "http_workers") {
+        config.http_workers = count_of(node, "http_workers");
+    } else if (key == "compute_workers") {
+        config.compute_workers = count_of(node, "compute_workers");
+    } else if (key == "threads_per_job") {
+        config.threads_per_job = count_of(node, "threads_per_job");
+    } else if (key == "device") {
+        read_devices(node, config);
+    } else {
+        fail(node.source(), fmt::format("{}: there is no such key", key));
+    }
+}
+
+}  // namespace
+
+ListenAddress parse_listen(const std::string& text) {
+    const std::size_t colon = text.rfind(':');
+    ListenAddress listen;
+    const char* end = text.data() + text.size();
+    const auto parsed = colon == std::string::npos
+                            ? std::from_chars_result{end, std::errc::invalid_argument}
+                            : std::from_chars(text.data() + colon + 1, end, listen.port);
+    if (parsed.ec != std::errc() || parsed.ptr != end || listen.port < 0 || listen.port > 65535) {
+        throw BadConfig(fmt::format("listen: {} is no ADDRESS:PORT", text));
+    }
+    std::string address = text.substr(0, colon);
+    if (address == "[::1]") {
+        address = "::1";
+    }
+    const bool loopback = address == "localhost" || address == "::1" || address.starts_with("127.");
+    if (!address.empty() && !loopback) {
+        throw BadConfig(
+            fmt::format("listen: {} is not on the loopback interface; other addresses need "
+                        "accounts, which this "
+                        "version does not have: listen on 127.0.0.1",
+                        address));
+    }
+    if (!address.empty()) {
+        listen.address = address == "localhost" ? "127.0.0.1" : address;
+    }
+    return listen;
+}
+
+Config read_config(const std::filesystem::path& file) {
+    Config config;
+    try {
+        const toml::table table = toml::parse_file(file.string());
+        for (const auto& [key, node] : table) {
+            read_key(key.str(), node, config);
+        }
+    } catch (const toml::parse_error& error) {
+        fail(error.source(), std::string(error.description()));
+    }
+    return config;
+}
+
+std::filesystem::path default_state_dir() {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): read once, before any thread exists.
+    if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0') {
+        return std::filesystem::path(state) / "leafcutter";
+    }
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): likewise.
+    if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
+        return std::filesystem::path(home) / ".local/state/leafcutter";
+    }
+    throw BadConfig("there is no home folder to keep the state in: name one with --state");
+}
+
+void check_device(const DeviceRecord& device) {
+    const auto is_plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+    };
+    constexpr std::size_t kLongest = 64;
+    if (device.id.empty() || device.id.size() > kLongest ||
+        !std::all_of(device.id.begin(), device.id.end(), is_plain)) {
+        throw BadConfig("id: must be 1 to 64 of a-z, 0-9, - and _");
+    }
+    if (!device.uri.starts_with("grbl:") && !device.uri.starts_with("sim:grbl")) {
+        throw BadConfig("uri: must be grbl:PORT, grbl:tcp://HOST:PORT or sim:grbl");
+    }
+    for (const double side : device.bed_mm) {
+        if (!std::isfinite(side) || side <= 0.0) {
+            throw BadConfig("bed_mm: both sides must be > 0");
+        }
+    }
+}
+
+}  // namespace leafcutter::server

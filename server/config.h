@@ -1,0 +1,49 @@
+// How the daemon is set up: a TOML file, overruled by the command line.
+
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "server/store/records.h"
+
+namespace leafcutter::server {
+
+// The configuration is wrong; the message names the file, the line or the key.
+class BadConfig : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+struct ListenAddress {
+    std::string address = "127.0.0.1";
+    int port = 8080;
+};
+
+struct Config {
+    ListenAddress listen;
+    std::filesystem::path state;     // Empty: default_state_dir().
+    std::vector<std::string> hosts;  // Further names in Host headers that are ours.
+    unsigned http_workers = 8;
+    unsigned compute_workers = 1;
+    unsigned threads_per_job = 0;  // 0: as many as the machine has.
+    std::vector<DeviceRecord> devices;
+};
+
+// "127.0.0.1:8080", "[::1]:8080" or ":8080". Throws BadConfig; also for an address that is not
+// loopback, since there are no accounts yet.
+ListenAddress parse_listen(const std::string& text);
+
+// Throws BadConfig for what can't be read, unknown keys included.
+Config read_config(const std::filesystem::path& file);
+
+// $XDG_STATE_HOME/leafcutter, else ~/.local/state/leafcutter.
+std::filesystem::path default_state_dir();
+
+// Throws BadConfig unless `device` has a plain id, a name and a URI this build can open.
+void check_device(const DeviceRecord& device);
+
+}  // namespace leafcutter::server

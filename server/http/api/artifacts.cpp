@@ -1,0 +1,135 @@
+// The files of a finished job.
+
+#include <algorithm>
+#include <charconv>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "server/app.h"
+#include "server/http/api/handlers.h"
+#include "server/http/api/lookup.h"
+#include "server/http/problem.h"
+#include "server/http/zip.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+using nlohmann::json;
+
+std::optional<std::int64_t> number_in(std::string_view text) {
+    std::int64_t number = 0;
+    const char* end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, number);
+    const bool good = !text.empty() && parsed.ec == std::errc() && parsed.ptr == end && number >= 0;
+    return good ? std::optional(number) : std::nullopt;
+}
+
+struct ByteRange {
+    std::int64_t first = 0;
+    std::int64_t last = 0;
+};
+
+// One range of RFC 9110, section 14.1.2; nothing for a header that is to be ignored. Throws
+// HttpProblem (416).
+std::optional<ByteRange> range_in(const Request& request, std::int64_t size) {
+    const std::string header = request.header("range").value_or("");
+    constexpr std::string_view kUnit = "bytes=";
+    const std::size_t dash = header.find('-');
+    if (!header.starts_with(kUnit) || dash == std::string::npos) {
+        return std::nullopt;
+    }
+    const auto from = number_in(std::string_view(header).substr(kUnit.size(), dash - kUnit.size()));
+    const auto to = number_in(std::string_view(header).substr(dash + 1));
+    const bool open = header.size() == dash + 1;
+    ByteRange range;
+    if (from && (to || open)) {
+        range = {*from, std::min(to.value_or(size - 1), size - 1)};
+    } else if (!from && to && dash == kUnit.size()) {
+        range = {std::max<std::int64_t>(0, size - *to), size - 1};
+    } else {
+        return std::nullopt;
+    }
+    if (range.first > range.last) {
+        throw HttpProblem(416, "bad-range", fmt::format("the file has {} bytes", size));
+    }
+    return range;
+}
+
+std::string file_name_of(const std::string& path) {
+    return path.substr(path.rfind('/') + 1);
+}
+
+// Names come from users: plain letters for old clients, RFC 8187 for all others.
+std::string attachment(const std::string& name) {
+    std::string plain;
+    std::string encoded;
+    for (const char c : name) {
+        const bool safe = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+                          (c >= 'A' && c <= 'Z') || c == '-' || c == '_' || c == '.';
+        plain += safe ? c : '_';
+        encoded += safe ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+    return fmt::format("attachment; filename=\"{}\"; filename*=UTF-8''{}", plain, encoded);
+}
+
+}  // namespace
+
+Response list_artifacts(App& app, Request& request) {
+    const JobRecord job = find_job(app, request);
+    json artifacts = json::array();
+    for (const ArtifactRecord& artifact : app.store().jobs.artifacts(job.id)) {
+        artifacts.push_back({{"path", artifact.path},
+                             {"bytes", artifact.bytes},
+                             {"sha256", artifact.sha256},
+                             {"media_type", artifact.media_type}});
+    }
+    return json_response({{"artifacts", artifacts}});
+}
+
+Response show_artifact(App& app, Request& request) {
+    const auto artifact = app.store().jobs.artifact(request.capture("id"), request.capture("path"));
+    if (!artifact) {
+        throw HttpProblem(404, "no-such-artifact", "the job has no such file");
+    }
+    Response response;
+    response.headers["ETag"] = fmt::format("\"{}\"", artifact->sha256);
+    response.headers["Accept-Ranges"] = "bytes";
+    response.headers["Cache-Control"] = "private, no-cache";
+    if (request.header("if-none-match").value_or("").find(artifact->sha256) != std::string::npos) {
+        response.status = 304;
+        return response;
+    }
+    response.content_type = artifact->media_type;
+    response.headers["Content-Disposition"] = attachment(file_name_of(artifact->path));
+    auto file = std::make_shared<FileHandle>(app.store().blobs.open(artifact->sha256));
+    response.file = FilePart{std::move(file), 0, artifact->bytes};
+    const auto range = range_in(request, artifact->bytes);
+    const std::string validator = request.header("if-range").value_or(response.headers["ETag"]);
+    if (range && validator == response.headers["ETag"]) {
+        response.status = 206;
+        response.file->offset = range->first;
+        response.file->bytes = range->last - range->first + 1;
+        response.headers["Content-Range"] =
+            fmt::format("bytes {}-{}/{}", range->first, range->last, artifact->bytes);
+    }
+    return response;
+}
+
+Response show_package(App& app, Request& request) {
+    const JobRecord job = find_job(app, request);
+    const std::vector<ArtifactRecord> artifacts = app.store().jobs.artifacts(job.id);
+    if (artifacts.empty()) {
+        throw HttpProblem(409, "not-ready", fmt::format("the job is {}", to_string(job.state)));
+    }
+    FileHandle zip = app.store().blobs.scratch();
+    const std::int64_t bytes = write_zip(app.store().blobs, artifacts, zip);
+    Response response;
+    response.content_type = "application/zip";
+    response.headers["Content-Disposition"] = attachment(job.name + ".zip");
+    response.file = FilePart{std::make_shared<FileHandle>(std::move(zip)), 0, bytes};
+    return response;
+}
+
+}  // namespace leafcutter::server

@@ -1,0 +1,58 @@
+// Every call of the API: parse, call, write. What they throw is translated by the edge.
+
+#pragma once
+
+#include "server/http/request.h"
+#include "server/http/response.h"
+
+namespace leafcutter::server {
+
+class App;
+
+// jobs.cpp
+Response create_job(App& app, Request& request);
+Response list_jobs(App& app, Request& request);
+Response show_job(App& app, Request& request);
+Response delete_job(App& app, Request& request);
+Response recompute_job(App& app, Request& request);
+Response put_blob(App& app, Request& request);
+
+// artifacts.cpp
+Response list_artifacts(App& app, Request& request);
+Response show_artifact(App& app, Request& request);
+Response show_package(App& app, Request& request);
+
+// cuts.cpp
+Response create_cut(App& app, Request& request);
+Response list_cuts(App& app, Request& request);
+Response show_cut(App& app, Request& request);
+Response start_cut(App& app, Request& request);
+Response confirm_sheet(App& app, Request& request);
+Response pause_cut(App& app, Request& request);
+Response resume_cut(App& app, Request& request);
+Response abort_cut(App& app, Request& request);
+
+// devices.cpp
+Response list_devices(App& app, Request& request);
+Response show_device(App& app, Request& request);
+Response put_device(App& app, Request& request);
+Response delete_device(App& app, Request& request);
+Response command_device(App& app, Request& request);
+Response list_ports(App& app, Request& request);
+
+// materials.cpp
+Response list_materials(App& app, Request& request);
+Response show_material(App& app, Request& request);
+
+// events.cpp
+Response stream_events(App& app, Request& request);
+Response stream_job_events(App& app, Request& request);
+
+// health.cpp
+Response show_health(App& app, Request& request);
+Response show_readiness(App& app, Request& request);
+Response show_metrics(App& app, Request& request);
+Response show_version(App& app, Request& request);
+Response show_openapi(App& app, Request& request);
+
+}  // namespace leafcutter::server

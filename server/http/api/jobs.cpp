@@ -1,0 +1,223 @@
+// Jobs and the meshes they are made of.
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "server/app.h"
+#include "server/http/api/handlers.h"
+#include "server/http/api/lookup.h"
+#include "server/http/api/views.h"
+#include "server/http/json_body.h"
+#include "server/http/multipart.h"
+#include "server/http/problem.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kLongestName = 200;
+
+void check_room(App& app, std::int64_t bytes) {
+    if (!app.store().blobs.has_room_for(bytes)) {
+        throw HttpProblem(507, "disk", "there is no room for this file");
+    }
+}
+
+// Streams the current part into the blob store.
+SourceFile store_mesh(App& app, MultipartReader& parts, const PartHead& head) {
+    const std::unique_ptr<BlobWriter> writer = app.store().blobs.begin();
+    std::array<char, 64 * 1024> piece;
+    while (const std::size_t size = parts.read(piece)) {
+        writer->write({piece.data(), size});
+    }
+    const BlobId blob = writer->finish();
+    return {head.file_name, blob.bytes, blob.sha256};
+}
+
+NewJob job_from_form(App& app, const Request& request) {
+    check_room(app, request.body.bytes);
+    NewJob job;
+    job.params_json = "{}";
+    MultipartReader parts(*request.header("content-type"), request.body);
+    while (const auto part = parts.next()) {
+        if (part->name == "mesh") {
+            job.file = store_mesh(app, parts, *part);
+        } else if (part->name == "params") {
+            job.params_json = parts.read_all(kMostJsonBytes);
+        } else if (part->name == "name") {
+            job.name = parts.read_all(4 * kLongestName);
+        } else {
+            throw HttpProblem(400, "bad-multipart", "there is no field \"" + part->name + "\"");
+        }
+    }
+    if (job.file.sha256.empty()) {
+        throw HttpProblem(400, "no-mesh", "the form has no file in the field \"mesh\"");
+    }
+    return job;
+}
+
+std::string text_at(const json& body, const char* key, const std::string& otherwise) {
+    const auto found = body.find(key);
+    if (found == body.end()) {
+        return otherwise;
+    }
+    if (!found->is_string()) {
+        throw HttpProblem(422, "bad-field", fmt::format("{}: must be a string", key));
+    }
+    return found->get<std::string>();
+}
+
+NewJob job_from_json(App& app, const Request& request) {
+    const json body = read_json_object(request);
+    NewJob job;
+    job.file.sha256 = text_at(body, "blob", "");
+    const auto bytes =
+        is_sha256(job.file.sha256) ? app.store().blobs.size(job.file.sha256) : std::nullopt;
+    if (!bytes) {
+        throw HttpProblem(422, "no-blob",
+                          "blob: there is none of that name; PUT it to /blobs first");
+    }
+    job.file.bytes = *bytes;
+    job.name = text_at(body, "name", "");
+    job.file.name = text_at(body, "file_name", job.name);
+    job.params_json = dump_json(body.value("params", json::object()));
+    return job;
+}
+
+// Parameters are refused before any work starts; what is kept is what was given.
+void check_params(App& app, NewJob& job) {
+    job.params_json = dump_json(parse_json(job.params_json));
+    app.parts().check_params(job.params_json);
+}
+
+std::optional<IdempotencyKey> key_of(const Request& request, const NewJob& job) {
+    const auto key = request.header("idempotency-key");
+    if (!key) {
+        return std::nullopt;
+    }
+    return IdempotencyKey{
+        *key, sha256_of(fmt::format("{}\n{}\n{}", job.file.sha256, job.name, job.params_json))};
+}
+
+Response accept(App& app, const Request& request, NewJob job) {
+    check_params(app, job);
+    job.name = job.name.empty() ? job.file.name : job.name;
+    job.name.resize(std::min(job.name.size(), kLongestName));
+    const AddedJob added = app.store().jobs.add(job, key_of(request, job));
+    if (!added.replayed) {
+        app.compute().wake();
+    }
+    Response response = json_response(job_json(app, added.job), 201);
+    response.headers["Location"] = "/api/v1/jobs/" + added.job.id;
+    return response;
+}
+
+std::int64_t number_in(const Request& request, const char* name, std::int64_t otherwise) {
+    const auto found = request.query.find(name);
+    if (found == request.query.end()) {
+        return otherwise;
+    }
+    std::int64_t number = 0;
+    const char* end = found->second.data() + found->second.size();
+    const auto parsed = std::from_chars(found->second.data(), end, number);
+    if (parsed.ec != std::errc() || parsed.ptr != end || number < 0) {
+        throw HttpProblem(400, "bad-query", fmt::format("{}: must be a whole number", name));
+    }
+    return number;
+}
+
+}  // namespace
+
+Response create_job(App& app, Request& request) {
+    const std::string type = request.header("content-type").value_or("");
+    const bool is_form = type.starts_with("multipart/form-data");
+    return accept(app, request,
+                  is_form ? job_from_form(app, request) : job_from_json(app, request));
+}
+
+Response list_jobs(App& app, Request& request) {
+    JobQuery query;
+    constexpr std::int64_t kMost = 200;
+    query.limit =
+        static_cast<int>(std::clamp<std::int64_t>(number_in(request, "limit", 50), 1, kMost));
+    if (const auto state = request.query.find("state"); state != request.query.end()) {
+        query.state = job_state_named(state->second);
+        if (!query.state) {
+            throw HttpProblem(400, "bad-query", "state: there is no such state");
+        }
+    }
+    if (request.query.count("cursor") != 0) {
+        query.below_ordinal = number_in(request, "cursor", 0);
+    }
+    json jobs = json::array();
+    const std::vector<JobRecord> page = app.store().jobs.list(query);
+    for (const JobRecord& job : page) {
+        jobs.push_back(job_json(app, job));
+    }
+    const bool full = static_cast<int>(page.size()) == query.limit;
+    const json cursor = full ? json(std::to_string(page.back().ordinal)) : json();
+    return json_response({{"jobs", jobs}, {"next_cursor", cursor}});
+}
+
+Response show_job(App& app, Request& request) {
+    return json_response(job_json(app, find_job(app, request)));
+}
+
+Response delete_job(App& app, Request& request) {
+    const JobRecord job = find_job(app, request);
+    if (app.store().jobs.cancel(job.id)) {
+        app.compute().stop_job(job.id);
+        return json_response(job_json(app, find_job(app, request)));
+    }
+    if (app.store().jobs.remove(job.id) == Removal::StillInUse) {
+        throw HttpProblem(409, "in-use", "the job has a cut under way: abort it first");
+    }
+    Response gone;
+    gone.status = 204;
+    return gone;
+}
+
+Response recompute_job(App& app, Request& request) {
+    const JobRecord old = find_job(app, request);
+    const json body = read_json_object(request);
+    const auto params = body.find("params");
+    NewJob job;
+    job.file = old.file;
+    job.name = text_at(body, "name", old.name);
+    job.params_json = params == body.end() ? old.params_json : dump_json(*params);
+    return accept(app, request, std::move(job));
+}
+
+Response put_blob(App& app, Request& request) {
+    const std::string& wanted = request.capture("sha256");
+    if (!is_sha256(wanted)) {
+        throw HttpProblem(422, "bad-digest", "the name must be a SHA-256 in lower-case hex");
+    }
+    Response response;
+    std::array<char, 64 * 1024> piece;
+    if (app.store().blobs.size(wanted)) {
+        while (request.body.read(piece) > 0) {  // Known already; the bytes have to go somewhere.
+        }
+        response.status = 204;
+        return response;
+    }
+    check_room(app, request.body.bytes);
+    const std::unique_ptr<BlobWriter> writer = app.store().blobs.begin();
+    while (const std::size_t size = request.body.read(piece)) {
+        writer->write({piece.data(), size});
+    }
+    if (writer->digest().sha256 != wanted) {
+        throw HttpProblem(422, "bad-digest", "the bytes have another SHA-256 than the name says");
+    }
+    writer->finish();
+    response.status = 201;
+    return response;
+}
+
+}  // namespace leafcutter::server

@@ -1,0 +1,290 @@
+#include "server/http/api/views.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "server/app.h"
+#include "server/http/json_body.h"
+#include "server/store/ids.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+using nlohmann::json;
+
+// What the store holds was written by us, but a page must not fail on it.
+json stored_json(const std::string& text) {
+    return json::parse(text, nullptr, /*allow_exceptions=*/false);
+}
+
+std::vector<std::string> job_actions(App& app, const JobRecord& job) {
+    if (job.state == JobState::Queued || job.state == JobState::Computing) {
+        return {"cancel"};
+    }
+    std::vector<std::string> actions;
+    if (job.state == JobState::Ready || job.state == JobState::Done) {
+        actions.emplace_back("cut");
+    }
+    actions.emplace_back("recompute");
+    const bool in_use =
+        std::any_of(job.cuts.begin(), job.cuts.end(), [&app](const std::string& id) {
+            const auto cut = app.store().cuts.find(id);
+            return cut && !is_final(cut->state);
+        });
+    if (!in_use) {
+        actions.emplace_back("remove");
+    }
+    return actions;
+}
+
+// A cut may be let loose: the machine stands idle and no other cut has it.
+bool may_fire(App& app, const CutRecord& cut) {
+    const auto runner = app.fleet().find(cut.device);
+    if (!runner || !runner->is_ready()) {
+        return false;
+    }
+    const std::vector<CutRecord> open = app.store().cuts.open_on(cut.device);
+    return std::none_of(open.begin(), open.end(), [&cut](const CutRecord& other) {
+        return other.id != cut.id && occupies_device(other.state);
+    });
+}
+
+std::vector<std::string> cut_actions(App& app, const CutRecord& cut) {
+    switch (cut.state) {
+        case CutState::Waiting:
+            return may_fire(app, cut) ? std::vector<std::string>{"start", "abort"}
+                                      : std::vector<std::string>{"abort"};
+        case CutState::AwaitingSheet:
+            return may_fire(app, cut) ? std::vector<std::string>{"confirm-sheet", "abort"}
+                                      : std::vector<std::string>{"abort"};
+        case CutState::Armed:
+            return {"abort"};
+        case CutState::Cutting:
+            return {"pause", "abort"};
+        case CutState::Paused:
+            return {"resume", "abort"};
+        default:
+            return {};
+    }
+}
+
+json progress_json(App& app, const JobRecord& job) {
+    const auto running = app.compute().progress(job.id);
+    const bool finished = job.state == JobState::Ready || job.state == JobState::Done;
+    return {{"stage", running ? running->stage : ""},
+            {"fraction", running    ? running->fraction
+                         : finished ? 1.0
+                                    : 0.0}};
+}
+
+json status_json(const drivers::DeviceStatus& status) {
+    return {{"state", drivers::to_string(status.state)},
+            {"machine_position_mm", status.machine_position_mm},
+            {"work_position_mm", status.work_position_mm},
+            {"feed_mm_per_min", status.feed_mm_per_min},
+            {"power_s", status.power_s},
+            {"override_percent", status.override_percent},
+            {"alarm_code", status.alarm_code},
+            {"message", status.message},
+            {"firmware", status.firmware}};
+}
+
+std::vector<std::string> device_actions(const DeviceRunner& runner) {
+    std::vector<std::string> actions{"hold", "resume", "stop", "reset"};
+    const bool connected = runner.status().state != drivers::MachineState::Disconnected;
+    if (connected && !runner.current_cut()) {
+        actions.insert(actions.end(), {"home", "unlock", "jog", "frame", "console"});
+    }
+    return actions;
+}
+
+json laser_json(const fab::LaserSettings& laser) {
+    return {{"power_percent", laser.power_percent},
+            {"feed_mm_per_min", laser.feed_mm_per_min},
+            {"passes", laser.passes}};
+}
+
+// The state that the event led to may be past already: clients get what is true now.
+void add_subject(App& app, const EventRecord& event, json& data) {
+    if (event.type == "job") {
+        if (const auto job = app.store().jobs.find(event.subject)) {
+            data["job"] = job_json(app, *job);
+            return;
+        }
+    } else if (const auto cut = app.store().cuts.find(event.subject)) {
+        data["cut"] = cut_json(app, *cut);
+        return;
+    }
+    data["removed"] = event.subject;
+}
+
+}  // namespace
+
+json job_json(App& app, const JobRecord& job) {
+    json error;
+    if (job.failure) {
+        error = {{"kind", job.failure->kind},
+                 {"code", job.failure->code},
+                 {"detail", job.failure->detail}};
+    }
+    json sheets = json::array();
+    for (const SheetRecord& sheet : job.sheets) {
+        sheets.push_back({{"id", sheet.number},
+                          {"material", sheet.material},
+                          {"state", sheet.cut ? "cut" : "uncut"},
+                          {"program_sha256", sheet.program_sha256},
+                          {"estimated_s", sheet.estimated_s}});
+    }
+    return {
+        {"id", job.id},
+        {"name", job.name},
+        {"state", to_string(job.state)},
+        {"created_at", rfc3339(job.created_ms)},
+        {"updated_at", rfc3339(job.updated_ms)},
+        {"version", job.version},
+        {"file", {{"name", job.file.name}, {"bytes", job.file.bytes}, {"sha256", job.file.sha256}}},
+        {"params", stored_json(job.params_json)},
+        {"progress", progress_json(app, job)},
+        {"error", error},
+        {"summary", job.summary_json ? stored_json(*job.summary_json) : json()},
+        {"sheets", sheets},
+        {"cuts", job.cuts},
+        {"actions", job_actions(app, job)}};
+}
+
+json cut_json(App& app, const CutRecord& cut) {
+    CutProgress progress{cut.lines_total, cut.lines_sent, cut.lines_acknowledged};
+    if (const auto runner = app.fleet().find(cut.device)) {
+        progress = runner->live_progress(cut.id).value_or(progress);
+    }
+    const double total = static_cast<double>(progress.lines_total);
+    const double fraction = cut.state == CutState::Done ? 1.0
+                            : total > 0.0 ? static_cast<double>(progress.lines_acknowledged) / total
+                                          : 0.0;
+    return {{"id", cut.id},
+            {"job", cut.job},
+            {"device", cut.device},
+            {"sheets", cut.sheets},
+            {"sheet", cut.sheet()},
+            {"state", to_string(cut.state)},
+            {"version", cut.version},
+            {"program_sha256", cut.program_sha256},
+            {"progress",
+             {{"lines_total", progress.lines_total},
+              {"lines_sent", progress.lines_sent},
+              {"lines_acknowledged", progress.lines_acknowledged},
+              {"fraction", fraction}}},
+            {"reason", cut.reason},
+            {"created_at", rfc3339(cut.created_ms)},
+            {"updated_at", rfc3339(cut.updated_ms)},
+            {"actions", cut_actions(app, cut)}};
+}
+
+bool cut_allows(App& app, const CutRecord& cut, const std::string& action) {
+    const std::vector<std::string> actions = cut_actions(app, cut);
+    return std::find(actions.begin(), actions.end(), action) != actions.end();
+}
+
+json device_json(const DeviceRunner& runner) {
+    const DeviceRecord& device = runner.record();
+    const auto cut = runner.current_cut();
+    return {{"id", device.id},
+            {"name", device.name},
+            {"uri", device.uri},
+            {"auto_start", device.auto_start},
+            {"bed_mm", device.bed_mm},
+            {"status", status_json(runner.status())},
+            {"cut", cut ? json(*cut) : json()},
+            {"console", runner.console_lines()},
+            {"actions", device_actions(runner)}};
+}
+
+json material_json(const fab::Material& material) {
+    json sheets = json::array();
+    for (const fab::SheetSize& sheet : material.sheets) {
+        sheets.push_back({{"width_mm", sheet.width_mm}, {"height_mm", sheet.height_mm}});
+    }
+    return {{"id", material.id},
+            {"name", material.name},
+            {"colour", material.colour},
+            {"thickness_mm", material.thickness_mm},
+            {"weight_g_per_m2", material.weight_g_per_m2},
+            {"kerf_mm", material.kerf_mm},
+            {"min_strip_width_mm", material.min_strip_width_mm},
+            {"sheets", sheets},
+            {"cut", laser_json(material.cut)},
+            {"score", laser_json(material.score)},
+            {"engrave", laser_json(material.engrave)}};
+}
+
+std::vector<StoredEvent> stored_events(App& app, std::int64_t after, int limit) {
+    std::vector<StoredEvent> events;
+    for (const EventRecord& event : app.store().events.after(after, limit)) {
+        json data = {{"seq", event.seq},
+                     {"type", event.type},
+                     {"id", event.subject},
+                     {"at", rfc3339(event.at_ms)},
+                     {"note", event.note}};
+        add_subject(app, event, data);
+        events.push_back({event.seq, event.type, event.job, dump_json(data)});
+    }
+    return events;
+}
+
+std::optional<PassingEvent> passing_event(App& app,
+                                          const std::string& type,
+                                          const std::string& id) {
+    json data = {{"type", type}, {"id", id}};
+    std::string of_job;
+    if (type == "job") {
+        const auto job = app.store().jobs.find(id);
+        if (!job) {
+            return std::nullopt;
+        }
+        of_job = id;
+        data["job"] = job_json(app, *job);
+    } else if (type == "cut") {
+        const auto cut = app.store().cuts.find(id);
+        if (!cut) {
+            return std::nullopt;
+        }
+        of_job = cut->job;
+        data["cut"] = cut_json(app, *cut);
+    } else {
+        const auto runner = app.fleet().find(id);
+        if (!runner) {
+            return std::nullopt;
+        }
+        data["device"] = device_json(*runner);
+    }
+    return PassingEvent{of_job, dump_json(data)};
+}
+
+std::string snapshot_event(App& app, std::int64_t seq, const std::optional<std::string>& job) {
+    constexpr int kMostJobs = 200;
+    json data = {{"seq", seq},
+                 {"type", "snapshot"},
+                 {"jobs", json::array()},
+                 {"cuts", json::array()},
+                 {"devices", json::array()}};
+    JobQuery newest;
+    newest.limit = kMostJobs;
+    for (const JobRecord& each : app.store().jobs.list(newest)) {
+        if (!job || each.id == *job) {
+            data["jobs"].push_back(job_json(app, each));
+        }
+    }
+    for (const CutRecord& cut : app.store().cuts.list(kMostJobs)) {
+        if (!job || cut.job == *job) {
+            data["cuts"].push_back(cut_json(app, cut));
+        }
+    }
+    for (const auto& runner : app.fleet().all()) {
+        data["devices"].push_back(device_json(*runner));
+    }
+    return dump_json(data);
+}
+
+}  // namespace leafcutter::server

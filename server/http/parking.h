@@ -1,0 +1,84 @@
+// Where connections wait, a thousand on one thread, until a whole head of a request has come: slow
+// and silent clients cost a buffer here, never a worker.
+
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <unordered_map>
+#include <vector>
+
+namespace leafcutter::server {
+
+struct ParkingLimits {
+    std::chrono::milliseconds head_time{5000};   // From a head's first byte to its last.
+    std::chrono::milliseconds idle_time{30000};  // Between two requests.
+    std::chrono::milliseconds drain_time{1000};  // For the last bytes of a refused client.
+    std::size_t connections = 1024;
+};
+
+class Parking {
+public:
+    // Called by the parking thread with a connection and what has been read of it: a whole head and
+    // perhaps more. The callee owns the connection then.
+    using Ready = std::function<void(int fd, std::string bytes)>;
+
+    // Called for a head that grew too large or too slow; the callee owns the connection then.
+    using TooMuch = std::function<void(int fd, int status)>;
+
+    Parking(const ParkingLimits& limits, Ready ready, TooMuch too_much);
+    ~Parking();
+    Parking(const Parking&) = delete;
+    Parking& operator=(const Parking&) = delete;
+
+    // Takes a connection over; `bytes` were read from it already. Any thread.
+    void park(int fd, std::string bytes = {});
+
+    // Takes a connection over whose answer is written: says so, reads on for a moment so that the
+    // answer is not lost with what is still coming, and closes.
+    void drain(int fd);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    enum class Stay { Waiting, Draining };
+
+    struct Guest {
+        std::string bytes;
+        Clock::time_point leaves;
+        Stay stay = Stay::Waiting;
+    };
+
+    struct Arrival {
+        int fd = -1;
+        Guest guest;
+    };
+
+    void loop(const std::stop_token& stop);
+    void admit_arrivals();
+    void serve(int fd);
+    void take_head_if_whole(int fd, Guest& guest);
+    void expel_late_ones();
+    void leave(int fd);
+    void arrive(int fd, Guest guest);
+
+    const ParkingLimits limits_;
+    const Ready ready_;
+    const TooMuch too_much_;
+    int epoll_ = -1;
+    int wakeup_ = -1;
+    std::unordered_map<int, Guest> guests_;  // Of the thread alone.
+
+    std::mutex mutex_;  // Guards arrivals_.
+    std::vector<Arrival> arrivals_;
+
+    std::jthread thread_;  // Last: it uses everything above.
+};
+
+}  // namespace leafcutter::server

@@ -1,0 +1,209 @@
+#include "server/queue/compute_runner.h"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "geometry/error.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::string_view name_of(geometry::ErrorKind kind) {
+    switch (kind) {
+        case geometry::ErrorKind::BadFile:
+            return "bad-file";
+        case geometry::ErrorKind::BadMesh:
+            return "bad-mesh";
+        case geometry::ErrorKind::BadOption:
+            return "bad-option";
+        case geometry::ErrorKind::NotSupported:
+            return "not-supported";
+        case geometry::ErrorKind::SelfCheck:
+            return "self-check";
+    }
+    return "internal";
+}
+
+std::string media_type_of(std::string_view path) {
+    const auto ends = [path](std::string_view ending) { return path.ends_with(ending); };
+    if (ends(".json")) {
+        return "application/json";
+    }
+    if (ends(".svg")) {
+        return "image/svg+xml";
+    }
+    if (ends(".html")) {
+        return "text/html; charset=utf-8";
+    }
+    if (ends(".gcode")) {
+        return "text/x-gcode";
+    }
+    return ends(".obj") ? "model/obj" : ends(".dxf") ? "image/vnd.dxf" : "application/octet-stream";
+}
+
+double seconds_since_start() {
+    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+JobFailure failure_of(const std::exception& error) {
+    if (const auto* refused = dynamic_cast<const geometry::Error*>(&error)) {
+        return {std::string(name_of(refused->kind())), refused->code(), refused->what()};
+    }
+    if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
+        return {"internal", "out-of-memory", "the computation needs more memory than there is"};
+    }
+    return {"internal", "internal", std::string("the computation broke down: ") + error.what()};
+}
+
+ComputeRunner::ComputeRunner(Store& store,
+                             Compute compute,
+                             const ComputeOptions& options,
+                             std::function<void(const std::string&)> on_progress)
+    : store_(store),
+      compute_(std::move(compute)),
+      options_(options),
+      on_progress_(std::move(on_progress)) {
+    for (unsigned i = 0; i < std::max(1U, options.workers); ++i) {
+        workers_.emplace_back([this](const std::stop_token& stop) { loop(stop); });
+    }
+}
+
+ComputeRunner::~ComputeRunner() {
+    for (std::jthread& worker : workers_) {
+        worker.request_stop();
+    }
+    workers_.clear();
+}
+
+void ComputeRunner::wake() {
+    {
+        const std::scoped_lock lock(mutex_);
+        ++wakes_;
+    }
+    arrived_.notify_all();
+}
+
+void ComputeRunner::stop_job(const std::string& id) {
+    const std::scoped_lock lock(mutex_);
+    const auto found = running_.find(id);
+    if (found != running_.end()) {
+        found->second.stop.request_stop();
+    }
+}
+
+std::optional<ComputeProgress> ComputeRunner::progress(const std::string& id) const {
+    const std::scoped_lock lock(mutex_);
+    const auto found = running_.find(id);
+    return found == running_.end() ? std::nullopt : std::optional(found->second.progress);
+}
+
+void ComputeRunner::loop(const std::stop_token& stop) {
+    unsigned long seen = 0;
+    while (!stop.stop_requested()) {
+        {
+            std::unique_lock lock(mutex_);
+            arrived_.wait(lock, stop, [&] { return wakes_ != seen; });
+            seen = wakes_;
+        }
+        try {
+            while (!stop.stop_requested() && compute_next(stop)) {
+            }
+        } catch (const std::exception& error) {  // The store failed; the next wake tries again.
+            spdlog::error("compute worker: {}", error.what());
+        }
+    }
+}
+
+bool ComputeRunner::compute_next(const std::stop_token& stop) {
+    const std::optional<JobRecord> job = store_.jobs.claim();
+    if (!job) {
+        return false;
+    }
+    spdlog::info("job {}: computing {} ({} bytes)", job->id, job->file.name, job->file.bytes);
+    {
+        const std::scoped_lock lock(mutex_);
+        running_[job->id].progress = {"read", 0.0};
+    }
+    compute(*job, stop);
+    const std::scoped_lock lock(mutex_);
+    running_.erase(job->id);
+    return true;
+}
+
+void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
+    std::stop_source source;
+    {
+        const std::scoped_lock lock(mutex_);
+        source = running_.at(job.id).stop;
+    }
+    const std::stop_callback forward(stop, [&source] { source.request_stop(); });
+    // Cancelled between the claim and now: nobody could stop what did not run yet.
+    const std::optional<JobRecord> now = store_.jobs.find(job.id);
+    if (!now || now->state != JobState::Computing) {
+        return;
+    }
+    geometry::Context context;
+    context.stop = source.get_token();
+    context.threads = options_.threads_per_job;
+    context.clock_s = seconds_since_start;
+    context.progress = [this, &job](std::string_view stage, double fraction) {
+        note_progress(job.id, stage, fraction);
+    };
+    try {
+        const std::unique_ptr<MappedBlob> mesh = store_.blobs.map(job.file.sha256);
+        finish(job, compute_({job.file.name, mesh->bytes(), job.params_json, job.name}, context));
+    } catch (const geometry::Cancelled&) {
+        const bool requeued = stop.stop_requested() && store_.jobs.requeue(job.id);
+        spdlog::info("job {}: {}", job.id, requeued ? "back in the queue" : "cancelled");
+    } catch (const std::exception& error) {
+        spdlog::info("job {}: failed: {}", job.id, error.what());
+        store_.jobs.fail(job.id, failure_of(error));
+    } catch (...) {  // A thread's top: whatever it was, only this job fails.
+        store_.jobs.fail(job.id, {"internal", "internal", "the computation broke down"});
+    }
+}
+
+void ComputeRunner::finish(const JobRecord& job, const ComputeOutput& output) {
+    ComputedJob result;
+    result.summary_json = output.summary_json;
+    for (const fab::PackageFile& file : output.package.files) {
+        const BlobId blob = store_.blobs.put(file.bytes);
+        result.artifacts.push_back({file.path, blob.bytes, blob.sha256, media_type_of(file.path)});
+    }
+    for (const SheetPlan& plan : output.sheets) {
+        const auto program = std::find_if(
+            result.artifacts.begin(), result.artifacts.end(), [&plan](const auto& file) {
+                return !plan.program_path.empty() && file.path == plan.program_path;
+            });
+        const std::string sha256 = program == result.artifacts.end() ? "" : program->sha256;
+        result.sheets.push_back({plan.number, plan.material, sha256, plan.estimated_s, false});
+    }
+    const bool kept = store_.jobs.finish(job.id, result);
+    spdlog::info("job {}: {}", job.id, kept ? "ready" : "cancelled at the last moment");
+}
+
+void ComputeRunner::note_progress(const std::string& id, std::string_view stage, double fraction) {
+    constexpr auto kShortestGap = std::chrono::milliseconds(100);
+    {
+        const std::scoped_lock lock(mutex_);
+        Running& running = running_.at(id);
+        const Clock::time_point now = Clock::now();
+        const bool same_stage = running.progress.stage == stage;
+        running.progress = {std::string(stage), fraction};
+        if (same_stage && now - running.told < kShortestGap) {
+            return;
+        }
+        running.told = now;
+    }
+    on_progress_(id);
+}
+
+}  // namespace leafcutter::server

@@ -1,0 +1,108 @@
+// Computes queued jobs on worker threads of its own, oldest first. A job that throws fails alone.
+
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "fab/package.h"
+#include "geometry/context.h"
+#include "server/store/store.h"
+
+namespace leafcutter::server {
+
+struct ComputeInput {
+    std::string file_name;
+    std::span<const std::byte> bytes;
+    std::string params_json;
+    std::string job_name;
+};
+
+struct SheetPlan {
+    int number = 1;
+    std::string material;
+    std::string program_path;  // Inside the package; empty if the sheet has no program.
+    double estimated_s = 0.0;
+};
+
+struct ComputeOutput {
+    fab::Package package;
+    std::string summary_json;
+    std::vector<SheetPlan> sheets;
+};
+
+// What turns a mesh into a package; throws geometry::Error, geometry::Cancelled.
+using Compute = std::function<ComputeOutput(const ComputeInput&, const geometry::Context&)>;
+
+struct ComputeOptions {
+    unsigned workers = 1;          // Jobs at the same time.
+    unsigned threads_per_job = 1;  // Budget of each.
+};
+
+struct ComputeProgress {
+    std::string stage;
+    double fraction = 0.0;
+};
+
+class ComputeRunner {
+public:
+    // `on_progress` is called with a job's id, at most ten times a second per job.
+    ComputeRunner(Store& store,
+                  Compute compute,
+                  const ComputeOptions& options,
+                  std::function<void(const std::string& job)> on_progress);
+
+    // Stops: jobs in work go back to the queue.
+    ~ComputeRunner();
+    ComputeRunner(const ComputeRunner&) = delete;
+    ComputeRunner& operator=(const ComputeRunner&) = delete;
+
+    // There may be something in the queue.
+    void wake();
+
+    // Ends the work on a job that the store no longer calls computing.
+    void stop_job(const std::string& id);
+
+    // Nothing if it is not in work.
+    std::optional<ComputeProgress> progress(const std::string& id) const;
+
+private:
+    struct Running {
+        std::stop_source stop;
+        ComputeProgress progress;
+        std::chrono::steady_clock::time_point told;
+    };
+
+    void loop(const std::stop_token& stop);
+    bool compute_next(const std::stop_token& stop);
+    void compute(const JobRecord& job, const std::stop_token& stop);
+    void finish(const JobRecord& job, const ComputeOutput& output);
+    void note_progress(const std::string& id, std::string_view stage, double fraction);
+
+    Store& store_;
+    const Compute compute_;
+    const ComputeOptions options_;
+    const std::function<void(const std::string&)> on_progress_;
+
+    mutable std::mutex mutex_;  // Guards the members below.
+    std::condition_variable_any arrived_;
+    unsigned long wakes_ = 1;  // Counts wake(): the queue was worth a look.
+    std::map<std::string, Running> running_;
+
+    std::vector<std::jthread> workers_;  // Last: they use everything above.
+};
+
+// What a failed computation says of itself: a stable kind, a code, and words.
+JobFailure failure_of(const std::exception& error);
+
+}  // namespace leafcutter::server

@@ -1,0 +1,167 @@
+// The part of DeviceRunner that other threads call.
+
+#include <utility>
+
+#include "server/queue/device_runner.h"
+#include "server/queue/frame_program.h"
+
+namespace leafcutter::server {
+
+using drivers::MachineState;
+
+drivers::DeviceStatus DeviceRunner::status() const {
+    const std::shared_ptr<drivers::Device> machine = device();
+    if (machine) {
+        return machine->status();
+    }
+    drivers::DeviceStatus nothing;
+    const std::scoped_lock lock(mutex_);
+    nothing.message = message_;
+    return nothing;
+}
+
+std::vector<std::string> DeviceRunner::console_lines() const {
+    const std::scoped_lock lock(mutex_);
+    return {lines_.begin(), lines_.end()};
+}
+
+std::optional<std::string> DeviceRunner::current_cut() const {
+    const std::scoped_lock lock(mutex_);
+    return current_ ? std::optional(current_->id) : std::nullopt;
+}
+
+std::optional<CutProgress> DeviceRunner::live_progress(const std::string& cut) const {
+    const std::scoped_lock lock(mutex_);
+    return current_ && current_->id == cut ? std::optional(progress_) : std::nullopt;
+}
+
+bool DeviceRunner::is_ready() const {
+    return !current_cut() && status().state == MachineState::Idle;
+}
+
+void DeviceRunner::wake() {
+    look_at_queue_ = true;
+}
+
+bool DeviceRunner::pause(const std::string& cut) {
+    if (current_cut() != cut) {
+        return false;
+    }
+    hold();
+    return true;
+}
+
+bool DeviceRunner::resume(const std::string& cut) {
+    if (current_cut() != cut) {
+        return false;
+    }
+    resume();
+    return true;
+}
+
+bool DeviceRunner::abort(const std::string& cut) {
+    {
+        const std::scoped_lock lock(mutex_);
+        if (!current_ || current_->id != cut) {
+            return false;
+        }
+        abort_wanted_ = true;
+    }
+    if (const auto machine = device()) {
+        machine->cancel();
+    }
+    return true;
+}
+
+void DeviceRunner::hold() {
+    if (const auto machine = device()) {
+        machine->hold();
+    }
+}
+
+void DeviceRunner::resume() {
+    if (const auto machine = device()) {
+        machine->resume();
+    }
+}
+
+void DeviceRunner::stop() {
+    if (const auto machine = device()) {
+        machine->stop();
+    }
+}
+
+void DeviceRunner::reset() {
+    stop();
+    {
+        const std::scoped_lock lock(mutex_);
+        may_connect_ = true;
+    }
+    nudged_.notify_all();
+}
+
+void DeviceRunner::home() {
+    device_for_hand_work()->home();
+}
+
+void DeviceRunner::unlock() {
+    device_for_hand_work()->unlock();
+}
+
+void DeviceRunner::jog(const drivers::Jog& jog) {
+    device_for_hand_work()->jog(jog);
+}
+
+void DeviceRunner::console(const std::string& line) {
+    keep_line("> " + line);
+    device_for_hand_work()->console(line);
+}
+
+void DeviceRunner::frame() {
+    device_for_hand_work();
+    for (const CutRecord& cut : store_.cuts.open_on(record_.id)) {
+        std::string program = frame_program(store_.blobs.read(cut.program_sha256));
+        if (!program.empty()) {
+            const std::scoped_lock lock(mutex_);
+            frame_program_ = std::move(program);
+            return;
+        }
+    }
+    throw drivers::Refused("there is no sheet to frame: put a cut in this machine's queue first");
+}
+
+std::shared_ptr<drivers::Device> DeviceRunner::device() const {
+    const std::scoped_lock lock(mutex_);
+    return device_;
+}
+
+std::shared_ptr<drivers::Device> DeviceRunner::device_for_hand_work() const {
+    const std::scoped_lock lock(mutex_);
+    if (current_) {
+        throw drivers::Refused("a cut is in work on this machine: wait for its end or abort it");
+    }
+    if (!device_) {
+        throw drivers::Refused("the machine is not connected" +
+                               (message_.empty() ? std::string() : ": " + message_));
+    }
+    return device_;
+}
+
+void DeviceRunner::keep_line(std::string_view line) {
+    constexpr std::size_t kKept = 100;
+    if (line.empty() || line.front() == '<' || line == "ok") {
+        return;  // Status reports and acknowledgements come by the hundred.
+    }
+    const std::scoped_lock lock(mutex_);
+    lines_.emplace_back(line);
+    if (lines_.size() > kKept) {
+        lines_.pop_front();
+    }
+}
+
+void DeviceRunner::say(const std::string& message) {
+    const std::scoped_lock lock(mutex_);
+    message_ = message;
+}
+
+}  // namespace leafcutter::server

@@ -1,0 +1,85 @@
+#include "server/queue/device_fleet.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+namespace leafcutter::server {
+
+DeviceFleet::DeviceFleet(Store& store, DeviceHooks hooks)
+    : store_(store), hooks_(std::move(hooks)) {
+    for (const DeviceRecord& device : store_.devices.list()) {
+        const auto& doubtful = store_.interrupted_devices;
+        const bool inspect =
+            std::find(doubtful.begin(), doubtful.end(), device.id) != doubtful.end();
+        // A simulated machine died with the daemon: there is nothing to look at.
+        const bool simulated = device.uri.starts_with("sim:");
+        const FirstContact contact =
+            inspect && !simulated ? FirstContact::AfterReset : FirstContact::AtOnce;
+        runners_[device.id] = std::make_shared<DeviceRunner>(device, store_, hooks_, contact);
+    }
+}
+
+std::shared_ptr<DeviceRunner> DeviceFleet::find(const std::string& id) const {
+    const std::scoped_lock lock(mutex_);
+    const auto found = runners_.find(id);
+    return found == runners_.end() ? nullptr : found->second;
+}
+
+std::vector<std::shared_ptr<DeviceRunner>> DeviceFleet::all() const {
+    const std::scoped_lock lock(mutex_);
+    std::vector<std::shared_ptr<DeviceRunner>> runners;
+    for (const auto& [id, runner] : runners_) {
+        if (runner) {  // Null while put() changes it.
+            runners.push_back(runner);
+        }
+    }
+    return runners;
+}
+
+void DeviceFleet::check_idle(const std::string& id) const {
+    const std::shared_ptr<DeviceRunner> runner = find(id);
+    if (runner && runner->current_cut()) {
+        throw drivers::Refused("a cut is in work on this machine: wait for its end or abort it");
+    }
+}
+
+void DeviceFleet::put(const DeviceRecord& device) {
+    check_idle(device.id);
+    store_.devices.put(device);
+    std::shared_ptr<DeviceRunner> old;
+    {
+        const std::scoped_lock lock(mutex_);
+        old = std::exchange(runners_[device.id], nullptr);
+    }
+    old.reset();  // Its port must be free before the next one opens it.
+    auto runner = std::make_shared<DeviceRunner>(device, store_, hooks_, FirstContact::AtOnce);
+    const std::scoped_lock lock(mutex_);
+    runners_[device.id] = std::move(runner);
+}
+
+void DeviceFleet::remove(const std::string& id) {
+    check_idle(id);
+    store_.devices.remove(id);
+    std::shared_ptr<DeviceRunner> old;
+    const std::scoped_lock lock(mutex_);
+    const auto found = runners_.find(id);
+    if (found != runners_.end()) {
+        old = std::move(found->second);
+        runners_.erase(found);
+    }
+}
+
+void DeviceFleet::stop_all() {
+    std::map<std::string, std::shared_ptr<DeviceRunner>> runners;
+    {
+        const std::scoped_lock lock(mutex_);
+        runners.swap(runners_);
+    }
+    std::vector<std::jthread> stopping;  // Side by side: each may take seconds to stand still.
+    for (auto& [id, runner] : runners) {
+        stopping.emplace_back([&runner = runner] { runner.reset(); });
+    }
+}
+
+}  // namespace leafcutter::server

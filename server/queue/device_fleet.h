@@ -1,0 +1,41 @@
+// The runners of all machines, by the machine's id. Safe from any thread.
+
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "server/queue/device_runner.h"
+
+namespace leafcutter::server {
+
+class DeviceFleet {
+public:
+    // Starts a runner for every machine of the store.
+    DeviceFleet(Store& store, DeviceHooks hooks);
+
+    // Shared: a request may still use a runner that is being removed.
+    std::shared_ptr<DeviceRunner> find(const std::string& id) const;
+    std::vector<std::shared_ptr<DeviceRunner>> all() const;
+
+    // Puts a runner in the place of the one there was. Throws drivers::Refused while that one has a
+    // cut in work.
+    void put(const DeviceRecord& device);
+    void remove(const std::string& id);
+
+    // Stops every machine, each holding its cut; returns when all stand.
+    void stop_all();
+
+private:
+    void check_idle(const std::string& id) const;
+
+    Store& store_;
+    const DeviceHooks hooks_;
+    mutable std::mutex mutex_;  // Guards runners_.
+    std::map<std::string, std::shared_ptr<DeviceRunner>> runners_;
+};
+
+}  // namespace leafcutter::server

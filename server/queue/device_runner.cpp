@@ -1,0 +1,367 @@
+#include "server/queue/device_runner.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "drivers/transport.h"
+#include "server/queue/frame_program.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+using drivers::JobOutcome;
+using drivers::MachineState;
+using namespace std::chrono_literals;
+
+constexpr auto kSlice = 20ms;
+
+CutProgress counted(const drivers::JobProgress& progress) {
+    return {static_cast<std::int64_t>(progress.lines_total),
+            static_cast<std::int64_t>(progress.lines_sent),
+            static_cast<std::int64_t>(progress.lines_acknowledged)};
+}
+
+std::string how_far(const CutRecord& cut, const drivers::JobProgress& progress) {
+    return fmt::format(
+        "sheet {}: {} of {} lines acknowledged, {} sent; cut this sheet again on fresh material",
+        cut.sheet(), progress.lines_acknowledged, progress.lines_total, progress.lines_sent);
+}
+
+// Everything a client sees of a status; equal text, nothing to tell.
+std::string fingerprint(const drivers::DeviceStatus& status) {
+    return fmt::format("{} {} {} {} {} {} {} {} {}", drivers::to_string(status.state),
+                       fmt::join(status.machine_position_mm, " "),
+                       fmt::join(status.work_position_mm, " "), status.feed_mm_per_min,
+                       status.power_s, fmt::join(status.override_percent, " "), status.alarm_code,
+                       status.message, status.firmware);
+}
+
+}  // namespace
+
+DeviceRunner::DeviceRunner(DeviceRecord record,
+                           Store& store,
+                           DeviceHooks hooks,
+                           FirstContact contact)
+    : record_(std::move(record)),
+      store_(store),
+      hooks_(std::move(hooks)),
+      may_connect_(contact == FirstContact::AtOnce) {
+    if (!may_connect_) {
+        message_ = "a cut was interrupted on this machine: look at it, then reset";
+    }
+    thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
+}
+
+DeviceRunner::~DeviceRunner() {
+    thread_.request_stop();
+    thread_.join();
+}
+
+void DeviceRunner::loop(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        try {
+            if (device()) {
+                step();
+            } else {
+                connect(stop);
+            }
+            publish();
+        } catch (const drivers::LinkLost& error) {
+            lose_link(error.what());
+        } catch (const std::exception& error) {  // The store failed; the machine goes on.
+            spdlog::error("device {}: {}", record_.id, error.what());
+            next_store_try_ = next_queue_look_ = Clock::now() + 1s;
+        }
+    }
+    try {
+        wind_down();
+    } catch (const std::exception& error) {
+        spdlog::error("device {}: {}", record_.id, error.what());
+    }
+}
+
+void DeviceRunner::connect(const std::stop_token& stop) {
+    constexpr auto kPause = 2s;
+    {
+        std::unique_lock lock(mutex_);
+        if (!may_connect_) {
+            nudged_.wait_for(lock, stop, kPause, [this] { return may_connect_; });
+            return;
+        }
+    }
+    try {
+        std::shared_ptr<drivers::Device> opened = hooks_.open(record_.uri);
+        opened->on_line = [this](std::string_view line) { keep_line(line); };
+        say("");
+        spdlog::info("device {}: opened {}", record_.id, record_.uri);
+        const std::scoped_lock lock(mutex_);
+        device_ = std::move(opened);
+    } catch (const std::exception& error) {
+        if (status().message != error.what()) {
+            spdlog::warn("device {}: {}", record_.id, error.what());
+        }
+        say(error.what());
+        std::unique_lock lock(mutex_);
+        nudged_.wait_for(lock, stop, kPause, [] { return false; });
+    }
+}
+
+void DeviceRunner::lose_link(const std::string& why) {
+    spdlog::warn("device {}: {}", record_.id, why);
+    drivers::JobProgress last = device()->progress();
+    bool was_cutting = false;
+    {
+        const std::scoped_lock lock(mutex_);
+        device_.reset();
+        was_cutting = current_.has_value();
+        may_connect_ = !was_cutting;
+        message_ = was_cutting ? why + "; look at the machine, then reset" : why;
+    }
+    framing_ = false;
+    if (was_cutting) {
+        last.outcome = JobOutcome::LinkLost;
+        last.reason = why;
+        settle(last);
+    }
+}
+
+void DeviceRunner::step() {
+    const std::shared_ptr<drivers::Device> machine = device();
+    machine->run_once(kSlice);
+    if (current_cut()) {
+        follow_cut();
+    } else if (framing_) {
+        framing_ = machine->progress().outcome == JobOutcome::Running;
+    } else {
+        take_up_next();
+    }
+}
+
+void DeviceRunner::follow_cut() {
+    const std::shared_ptr<drivers::Device> machine = device();
+    const drivers::JobProgress progress = machine->progress();
+    CutRecord cut;
+    {
+        const std::scoped_lock lock(mutex_);
+        cut = current_.value();
+        progress_ = counted(progress);
+    }
+    if (Clock::now() < next_store_try_) {
+        return;
+    }
+    if (progress.outcome != JobOutcome::Running) {
+        settle(progress);
+        return;
+    }
+    const MachineState state = machine->status().state;
+    const bool holds = state == MachineState::Hold || state == MachineState::Door;
+    const CutState wanted = holds                        ? CutState::Paused
+                            : state == MachineState::Run ? CutState::Cutting
+                                                         : cut.state;
+    if (wanted != cut.state && store_.cuts.move(cut.id, cut.state, wanted)) {
+        spdlog::info("cut {}: {}", cut.id, to_string(wanted));
+        const std::scoped_lock lock(mutex_);
+        current_->state = wanted;
+    }
+    constexpr auto kRecordEvery = 1s;
+    if (Clock::now() >= next_record_) {
+        store_.cuts.record_progress(cut.id, counted(progress));
+        next_record_ = Clock::now() + kRecordEvery;
+    }
+}
+
+// Throws, and keeps the cut in work, if the store fails: the outcome is written when it is back.
+void DeviceRunner::settle(const drivers::JobProgress& progress) {
+    CutRecord cut;
+    {
+        const std::scoped_lock lock(mutex_);
+        cut = current_.value();
+    }
+    write_outcome(cut, progress);
+    {
+        const std::scoped_lock lock(mutex_);
+        current_.reset();
+        abort_wanted_ = false;
+    }
+    look_at_queue_ = true;
+    hooks_.on_cut(cut.id);
+}
+
+void DeviceRunner::write_outcome(const CutRecord& cut, const drivers::JobProgress& progress) {
+    if (progress.outcome == JobOutcome::Done) {
+        store_.cuts.finish_sheet(cut, counted(progress));
+        spdlog::info("cut {}: sheet {} done", cut.id, cut.sheet());
+        return;
+    }
+    CutState state = CutState::Failed;
+    std::string reason = progress.reason;
+    if (progress.outcome == JobOutcome::Aborted) {
+        state = CutState::Aborted;
+    } else if (progress.outcome == JobOutcome::LinkLost) {
+        state = CutState::Interrupted;
+        reason = fmt::format("{}; {}", progress.reason, how_far(cut, progress));
+    }
+    store_.cuts.record_progress(cut.id, counted(progress));
+    store_.cuts.move(cut.id, cut.state, state, reason);
+    spdlog::info("cut {}: {} {}", cut.id, to_string(state), reason);
+}
+
+void DeviceRunner::take_up_next() {
+    std::optional<std::string> frame;
+    {
+        const std::scoped_lock lock(mutex_);
+        frame = std::exchange(frame_program_, std::nullopt);
+    }
+    if (frame) {
+        try {
+            device()->start(*frame);
+            framing_ = true;
+        } catch (const drivers::Refused& error) {
+            keep_line(error.what());
+        }
+        return;
+    }
+    constexpr auto kLookEvery = 2s;  // Besides every wake().
+    const Clock::time_point now = Clock::now();
+    const bool due = look_at_queue_.load() || now >= next_queue_look_;
+    if (!due) {
+        return;
+    }
+    look_at_queue_ = false;
+    next_queue_look_ = now + kLookEvery;
+    const std::vector<CutRecord> open = store_.cuts.open_on(record_.id);
+    const auto armed = std::find_if(open.begin(), open.end(), [](const CutRecord& cut) {
+        return cut.state == CutState::Armed;
+    });
+    if (armed != open.end()) {
+        take_up(*armed);
+    } else if (record_.auto_start && !open.empty() && is_ready()) {
+        // The configuration speaks for the operator here.
+        if (store_.cuts.arm(open.front())) {
+            look_at_queue_ = true;
+        }
+    }
+}
+
+void DeviceRunner::take_up(const CutRecord& cut) {
+    const drivers::DeviceStatus now = device()->status();
+    if (now.state != MachineState::Idle) {
+        // An armed cut must not fire later, when someone clears an alarm with hands in the bed.
+        const CutState back = cut.position > 0 ? CutState::AwaitingSheet : CutState::Waiting;
+        store_.cuts.move(
+            cut.id, CutState::Armed, back,
+            fmt::format("the machine is not idle but {}", drivers::to_string(now.state)));
+        return;
+    }
+    fire(cut);
+}
+
+void DeviceRunner::fire(const CutRecord& cut) {
+    const std::string program = store_.blobs.read(cut.program_sha256);
+    {
+        const std::scoped_lock lock(mutex_);
+        current_ = cut;
+        abort_wanted_ = false;
+        progress_ = {};
+    }
+    bool begun = false;
+    try {
+        begun = store_.cuts.begin_sheet(cut);
+    } catch (...) {
+        const std::scoped_lock lock(mutex_);
+        current_.reset();
+        throw;
+    }
+    drivers::JobProgress refused;
+    {
+        const std::scoped_lock lock(mutex_);
+        if (!begun) {
+            current_.reset();
+            return;
+        }
+        current_->state = CutState::Cutting;
+        refused.outcome = abort_wanted_ ? JobOutcome::Aborted : JobOutcome::Running;
+    }
+    if (refused.outcome == JobOutcome::Running) {
+        try {
+            spdlog::info("cut {}: sheet {} starts on {}", cut.id, cut.sheet(), record_.id);
+            device()->start(program);
+        } catch (const drivers::Refused& error) {
+            refused.outcome = JobOutcome::Failed;
+            refused.reason = error.what();
+        }
+    }
+    next_record_ = {};
+    if (refused.outcome != JobOutcome::Running) {
+        settle(refused);
+        return;
+    }
+    bool abort_now = false;
+    {
+        const std::scoped_lock lock(mutex_);
+        abort_now = abort_wanted_;
+    }
+    if (abort_now) {
+        device()->cancel();
+    }
+}
+
+void DeviceRunner::publish() {
+    constexpr auto kShortestGap = 200ms;
+    const Clock::time_point now = Clock::now();
+    if (now < next_publish_) {
+        return;
+    }
+    const std::optional<std::string> cut = current_cut();
+    const std::string seen = fmt::format("{} {} {} {}", fingerprint(status()), is_ready(),
+                                         cut.value_or(""), progress_.lines_acknowledged);
+    if (seen == published_) {
+        return;
+    }
+    published_ = seen;
+    next_publish_ = now + kShortestGap;
+    hooks_.on_device(record_.id);
+    if (cut) {
+        hooks_.on_cut(*cut);
+        return;
+    }
+    // Whether a cut may start depends on this machine's state.
+    for (const CutRecord& open : store_.cuts.open_on(record_.id)) {
+        hooks_.on_cut(open.id);
+    }
+}
+
+void DeviceRunner::wind_down() {
+    const std::shared_ptr<drivers::Device> machine = device();
+    if (!machine || !current_cut()) {
+        return;
+    }
+    spdlog::info("device {}: the daemon stops, holding the cut", record_.id);
+    constexpr auto kPatience = 5s;
+    const Clock::time_point end = Clock::now() + kPatience;
+    machine->cancel();
+    try {
+        while (machine->progress().outcome == JobOutcome::Running && Clock::now() < end) {
+            machine->run_once(kSlice);
+        }
+        if (machine->progress().outcome == JobOutcome::Running) {
+            machine->stop();
+            machine->run_once(kSlice);
+        }
+    } catch (const drivers::LinkLost& error) {
+        spdlog::warn("device {}: {}", record_.id, error.what());
+    }
+    drivers::JobProgress last = machine->progress();
+    if (last.outcome != JobOutcome::Done) {
+        last.outcome = JobOutcome::LinkLost;
+        last.reason = "the daemon was stopped";
+    }
+    settle(last);
+}
+
+}  // namespace leafcutter::server

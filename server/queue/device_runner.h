@@ -1,0 +1,127 @@
+// One thread per machine, the only one that drives it: connects, follows its state, takes armed
+// cuts up, and writes down what became of them. The beam is at-most-once: a cut's intent is on disk
+// before its first line is sent, and a cut whose link or daemon went away is never sent again.
+
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "drivers/device.h"
+#include "server/store/store.h"
+
+namespace leafcutter::server {
+
+struct DeviceHooks {
+    // Opens a machine; throws LinkLost or std::invalid_argument.
+    std::function<std::unique_ptr<drivers::Device>(std::string_view uri)> open;
+    std::function<void(const std::string& device)> on_device;  // Its status changed; <= 5 Hz.
+    std::function<void(const std::string& cut)> on_cut;        // Its progress or actions changed.
+};
+
+// Whether the machine's link may be opened at once, or only after an operator looked at it: opening
+// a serial port resets many controllers, and a cut may still be draining from one.
+enum class FirstContact { AtOnce, AfterReset };
+
+class DeviceRunner {
+public:
+    DeviceRunner(DeviceRecord record, Store& store, DeviceHooks hooks, FirstContact contact);
+
+    // A running cut is held, then cancelled with the beam off, and becomes interrupted.
+    ~DeviceRunner();
+    DeviceRunner(const DeviceRunner&) = delete;
+    DeviceRunner& operator=(const DeviceRunner&) = delete;
+
+    const DeviceRecord& record() const { return record_; }
+    drivers::DeviceStatus status() const;
+    std::vector<std::string> console_lines() const;
+
+    // The cut in work, and how far it is.
+    std::optional<std::string> current_cut() const;
+    std::optional<CutProgress> live_progress(const std::string& cut) const;
+
+    // The machine is idle and nothing is in work: a cut may start.
+    bool is_ready() const;
+
+    // There may be an armed cut.
+    void wake();
+
+    // None of these waits for the machine or the database. Those for a cut return false if it is
+    // not in work.
+    bool pause(const std::string& cut);
+    bool resume(const std::string& cut);
+    bool abort(const std::string& cut);
+    void hold();
+    void resume();
+    void stop();
+    void reset();  // Also lets a disconnected machine connect again.
+
+    // Throw drivers::Refused while a cut is in work or without a link.
+    void home();
+    void unlock();
+    void jog(const drivers::Jog& jog);
+    void console(const std::string& line);
+
+    // Traces the bounding box of the next cut's sheet with the beam off. Throws drivers::Refused.
+    void frame();
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void loop(const std::stop_token& stop);
+    void connect(const std::stop_token& stop);
+    void lose_link(const std::string& why);
+    void step();
+    void follow_cut();
+    void settle(const drivers::JobProgress& progress);
+    void write_outcome(const CutRecord& cut, const drivers::JobProgress& progress);
+    void take_up_next();
+    void take_up(const CutRecord& cut);
+    void fire(const CutRecord& cut);
+    void publish();
+    void wind_down();
+
+    std::shared_ptr<drivers::Device> device() const;
+    std::shared_ptr<drivers::Device> device_for_hand_work() const;
+    void keep_line(std::string_view line);
+    void say(const std::string& message);
+
+    const DeviceRecord record_;
+    Store& store_;
+    const DeviceHooks hooks_;
+    std::atomic<bool> look_at_queue_{true};
+
+    mutable std::mutex mutex_;  // Guards the members up to the next blank line.
+    std::condition_variable_any nudged_;
+    // Shared: a caller may be inside the device while the runner drops it.
+    std::shared_ptr<drivers::Device> device_;
+    std::optional<CutRecord> current_;
+    CutProgress progress_;
+    bool abort_wanted_ = false;
+    bool may_connect_ = true;
+    std::optional<std::string> frame_program_;
+    std::string message_;  // Why there is no link.
+    std::deque<std::string> lines_;
+
+    // Of the runner's thread alone.
+    bool framing_ = false;
+    Clock::time_point next_record_{};
+    Clock::time_point next_store_try_{};
+    Clock::time_point next_publish_{};
+    Clock::time_point next_queue_look_{};
+    std::string published_;
+
+    std::jthread thread_;  // Last: it uses everything above.
+};
+
+}  // namespace leafcutter::server

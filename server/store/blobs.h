@@ -1,0 +1,124 @@
+// Files named by the SHA-256 of their bytes: blobs/ab/abcdef…. What is there is complete and on
+// disk: written beside, synced, renamed, folder synced. Safe from any thread.
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace leafcutter::server {
+
+struct BlobId {
+    std::string sha256;  // 64 lower-case hex digits.
+    std::int64_t bytes = 0;
+};
+
+bool is_sha256(std::string_view text);
+
+// Lower-case hex.
+std::string sha256_of(std::string_view bytes);
+
+// The disk is full or fails; the message has the system's reason.
+class BlobWriteFailed : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+// An open file, closed with its owner.
+class FileHandle {
+public:
+    explicit FileHandle(int fd) : fd_(fd) {}
+    ~FileHandle();
+    FileHandle(FileHandle&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+    FileHandle& operator=(FileHandle&&) = delete;
+
+    int fd() const { return fd_; }
+
+private:
+    int fd_;
+};
+
+// A blob on its way in. Its temporary file vanishes unless finish() is reached.
+class BlobWriter {
+public:
+    BlobWriter(std::filesystem::path folder, std::filesystem::path temporary);
+    ~BlobWriter();
+    BlobWriter(const BlobWriter&) = delete;
+    BlobWriter& operator=(const BlobWriter&) = delete;
+
+    // Throws BlobWriteFailed.
+    void write(std::span<const char> bytes);
+
+    // The digest of what was written so far; no more may be written after it.
+    const BlobId& digest();
+
+    // Makes it durable under its name. Throws BlobWriteFailed.
+    BlobId finish();
+
+private:
+    struct Digest;
+
+    std::filesystem::path folder_;
+    std::filesystem::path temporary_;
+    int fd_ = -1;
+    std::unique_ptr<Digest> digest_;
+    BlobId id_;
+};
+
+// The bytes of a blob, mapped for reading as long as it lives.
+class MappedBlob {
+public:
+    MappedBlob(const FileHandle& file, std::size_t size);
+    ~MappedBlob();
+    MappedBlob(const MappedBlob&) = delete;
+    MappedBlob& operator=(const MappedBlob&) = delete;
+
+    std::span<const std::byte> bytes() const { return {data_, size_}; }
+
+private:
+    const std::byte* data_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+class Blobs {
+public:
+    // Creates the folder and sweeps temporary files that a dead process left behind.
+    explicit Blobs(std::filesystem::path folder);
+
+    std::unique_ptr<BlobWriter> begin() const;
+    BlobId put(std::string_view bytes) const;
+
+    // A file without a name, gone when it is closed. Throws BlobWriteFailed.
+    FileHandle scratch() const;
+
+    // Nothing if there is none of that name.
+    std::optional<std::int64_t> size(const std::string& sha256) const;
+
+    // Throws std::out_of_range if there is none.
+    FileHandle open(const std::string& sha256) const;
+    std::unique_ptr<MappedBlob> map(const std::string& sha256) const;
+    std::string read(const std::string& sha256) const;
+
+    // Room for `bytes` more with a reserve for the database.
+    bool has_room_for(std::int64_t bytes) const;
+
+    // Removes blobs that `is_referenced` denies and that are older than a day: younger ones may be
+    // uploads whose job is yet to come.
+    void sweep(const std::function<bool(const std::string& sha256)>& is_referenced) const;
+
+private:
+    std::filesystem::path path_of(const std::string& sha256) const;
+
+    std::filesystem::path folder_;
+};
+
+}  // namespace leafcutter::server

@@ -1,0 +1,343 @@
+#include "server/store/cut_store.h"
+
+#include <algorithm>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+#include "server/store/database.h"
+#include "server/store/event_log.h"
+#include "server/store/ids.h"
+#include "server/store/job_store.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+constexpr const char* kSelect =
+    "SELECT cut.ordinal, cut.id, cut.job, cut.device, cut.sheets, cut.position, cut.state, "
+    "cut.version, "
+    "cut.lines_total, cut.lines_sent, cut.lines_acknowledged, cut.reason, cut.created_ms, "
+    "cut.updated_ms FROM cut ";
+
+std::string joined(const std::vector<int>& numbers) {
+    return fmt::format("{}", fmt::join(numbers, ","));
+}
+
+std::vector<int> parted(const std::string& text) {
+    std::vector<int> numbers;
+    std::size_t at = 0;
+    while (at < text.size()) {
+        const std::size_t comma = std::min(text.find(',', at), text.size());
+        numbers.push_back(std::stoi(text.substr(at, comma - at)));
+        at = comma + 1;
+    }
+    return numbers;
+}
+
+CutRecord cut_from(SQLite::Database& database, SQLite::Statement& row) {
+    CutRecord cut;
+    cut.ordinal = row.getColumn(0).getInt64();
+    cut.id = row.getColumn(1).getString();
+    cut.job = row.getColumn(2).getString();
+    cut.device = row.getColumn(3).getString();
+    cut.sheets = parted(row.getColumn(4).getString());
+    cut.position = static_cast<std::size_t>(row.getColumn(5).getInt64());
+    cut.state = cut_state_named(row.getColumn(6).getString()).value_or(CutState::Failed);
+    cut.version = row.getColumn(7).getInt64();
+    cut.lines_total = row.getColumn(8).getInt64();
+    cut.lines_sent = row.getColumn(9).getInt64();
+    cut.lines_acknowledged = row.getColumn(10).getInt64();
+    cut.reason = row.getColumn(11).getString();
+    cut.created_ms = row.getColumn(12).getInt64();
+    cut.updated_ms = row.getColumn(13).getInt64();
+    SQLite::Statement program(database,
+                              "SELECT program_sha256 FROM sheet WHERE job = ? AND number = ?");
+    program.bind(1, cut.job);
+    program.bind(2, cut.sheet());
+    if (program.executeStep()) {
+        cut.program_sha256 = program.getColumn(0).getString();
+    }
+    return cut;
+}
+
+std::optional<CutRecord> find_cut(SQLite::Database& database, const std::string& id) {
+    SQLite::Statement query(database, std::string(kSelect) + "WHERE id = ?");
+    query.bind(1, id);
+    if (!query.executeStep()) {
+        return std::nullopt;
+    }
+    return cut_from(database, query);
+}
+
+std::vector<CutRecord> open_cuts(SQLite::Database& database, const std::string& device) {
+    SQLite::Statement query(
+        database,
+        std::string(kSelect) +
+            "WHERE device = ? AND state IN ('waiting','armed','cutting','paused','awaiting-sheet') "
+            "ORDER BY ordinal");
+    query.bind(1, device);
+    std::vector<CutRecord> cuts;
+    while (query.executeStep()) {
+        cuts.push_back(cut_from(database, query));
+    }
+    return cuts;
+}
+
+void tell(SQLite::Database& database, const CutRecord& cut, std::string note) {
+    EventRecord event;
+    event.type = "cut";
+    event.subject = cut.id;
+    event.job = cut.job;
+    event.note = std::move(note);
+    append_event(database, event);
+}
+
+// The one place where a cut changes its state.
+bool move_cut(SQLite::Database& database,
+              const CutRecord& cut,
+              CutState to,
+              const std::string& reason) {
+    if (!may_follow(cut.state, to)) {
+        throw std::logic_error(
+            fmt::format("a cut never goes from {} to {}", to_string(cut.state), to_string(to)));
+    }
+    SQLite::Statement update(database,
+                             "UPDATE cut SET state = ?, reason = ?, version = version + 1, "
+                             "updated_ms = ? WHERE id = ? AND state = ?");
+    update.bind(1, std::string(to_string(to)));
+    update.bind(2, reason);
+    update.bind(3, wall_clock_ms());
+    update.bind(4, cut.id);
+    update.bind(5, std::string(to_string(cut.state)));
+    if (update.exec() == 0) {
+        return false;
+    }
+    tell(database, cut, fmt::format("{} -> {}", to_string(cut.state), to_string(to)));
+    return true;
+}
+
+void set_progress(SQLite::Database& database, const std::string& id, const CutProgress& progress) {
+    SQLite::Statement update(
+        database,
+        "UPDATE cut SET lines_total = ?, lines_sent = ?, lines_acknowledged = ? WHERE id = ?");
+    update.bind(1, progress.lines_total);
+    update.bind(2, progress.lines_sent);
+    update.bind(3, progress.lines_acknowledged);
+    update.bind(4, id);
+    update.exec();
+}
+
+enum class Which { All, Uncut };
+
+std::vector<int> sheets_of(SQLite::Database& database, const std::string& job, Which which) {
+    SQLite::Statement query(database,
+                            "SELECT number, cut FROM sheet WHERE job = ? AND program_sha256 <> '' "
+                            "ORDER BY number");
+    query.bind(1, job);
+    std::vector<int> sheets;
+    while (query.executeStep()) {
+        if (which == Which::All || query.getColumn(1).getInt() == 0) {
+            sheets.push_back(query.getColumn(0).getInt());
+        }
+    }
+    return sheets;
+}
+
+void check_sheets(SQLite::Database& database, const std::string& job, std::vector<int>& sheets) {
+    SQLite::Statement state(database, "SELECT state FROM job WHERE id = ?");
+    state.bind(1, job);
+    const std::string found = state.executeStep() ? state.getColumn(0).getString() : "gone";
+    if (found != "ready" && found != "done") {
+        throw NotCuttable(fmt::format("the job is {}: only a ready one can be cut", found));
+    }
+    const std::vector<int> all = sheets_of(database, job, Which::All);
+    if (sheets.empty()) {
+        sheets = sheets_of(database, job, Which::Uncut);
+        if (sheets.empty()) {
+            sheets = all;
+        }
+    }
+    if (sheets.empty()) {
+        throw NotCuttable("the job has no sheets");
+    }
+    for (const int sheet : sheets) {
+        if (std::find(all.begin(), all.end(), sheet) == all.end()) {
+            throw NotCuttable(fmt::format("the job has no sheet {}", sheet));
+        }
+    }
+}
+
+void count_sheet_as_cut(SQLite::Database& database, const CutRecord& cut) {
+    SQLite::Statement mark(database, "UPDATE sheet SET cut = 1 WHERE job = ? AND number = ?");
+    mark.bind(1, cut.job);
+    mark.bind(2, cut.sheet());
+    mark.exec();
+    if (!sheets_of(database, cut.job, Which::Uncut).empty() ||
+        !move_job(database, cut.job, JobState::Ready, JobState::Done)) {
+        EventRecord event;
+        event.type = "job";
+        event.subject = cut.job;
+        event.job = cut.job;
+        event.note = fmt::format("sheet {} cut", cut.sheet());
+        append_event(database, event);
+    }
+}
+
+}  // namespace
+
+CutRecord CutStore::add(const std::string& job,
+                        const std::string& device,
+                        std::vector<int> sheets) {
+    CutRecord cut;
+    database_.write([&](SQLite::Database& database) {
+        check_sheets(database, job, sheets);
+        cut.id = new_id("c_");
+        cut.job = job;
+        SQLite::Statement insert(database,
+                                 "INSERT INTO cut(id, job, device, sheets, state, created_ms, "
+                                 "updated_ms) VALUES(?, ?, ?, ?, 'waiting', ?, ?)");
+        const std::int64_t now = wall_clock_ms();
+        insert.bind(1, cut.id);
+        insert.bind(2, job);
+        insert.bind(3, device);
+        insert.bind(4, joined(sheets));
+        insert.bind(5, now);
+        insert.bind(6, now);
+        insert.exec();
+        tell(database, cut, "waiting");
+        cut = find_cut(database, cut.id).value();
+    });
+    return cut;
+}
+
+std::optional<CutRecord> CutStore::find(const std::string& id) const {
+    std::optional<CutRecord> cut;
+    database_.read([&](SQLite::Database& database) { cut = find_cut(database, id); });
+    return cut;
+}
+
+std::vector<CutRecord> CutStore::list(int limit) const {
+    std::vector<CutRecord> cuts;
+    database_.read([&](SQLite::Database& database) {
+        SQLite::Statement query(database, std::string(kSelect) + "ORDER BY ordinal DESC LIMIT ?");
+        query.bind(1, limit);
+        while (query.executeStep()) {
+            cuts.push_back(cut_from(database, query));
+        }
+    });
+    return cuts;
+}
+
+std::vector<CutRecord> CutStore::open_on(const std::string& device) const {
+    std::vector<CutRecord> cuts;
+    database_.read([&](SQLite::Database& database) { cuts = open_cuts(database, device); });
+    return cuts;
+}
+
+bool CutStore::move(const std::string& id, CutState from, CutState to, const std::string& reason) {
+    bool moved = false;
+    database_.write([&](SQLite::Database& database) {
+        const auto cut = find_cut(database, id);
+        moved = cut && cut->state == from && move_cut(database, *cut, to, reason);
+    });
+    return moved;
+}
+
+bool CutStore::arm(const CutRecord& wanted) {
+    bool armed = false;
+    database_.write([&](SQLite::Database& database) {
+        for (const CutRecord& other : open_cuts(database, wanted.device)) {
+            if (other.id != wanted.id && occupies_device(other.state)) {
+                return;
+            }
+        }
+        const auto cut = find_cut(database, wanted.id);
+        armed = cut && cut->state == wanted.state && cut->position == wanted.position &&
+                move_cut(database, *cut, CutState::Armed, "");
+    });
+    return armed;
+}
+
+bool CutStore::begin_sheet(const CutRecord& cut) {
+    bool begun = false;
+    database_.write([&](SQLite::Database& database) {
+        if (cut.state != CutState::Armed || !move_cut(database, cut, CutState::Cutting, "")) {
+            return;
+        }
+        set_progress(database, cut.id, {});
+        SQLite::Statement intent(
+            database,
+            "INSERT INTO cut_intent(cut, sheet, program_sha256, at_ms) VALUES(?, ?, ?, ?)");
+        intent.bind(1, cut.id);
+        intent.bind(2, cut.sheet());
+        intent.bind(3, cut.program_sha256);
+        intent.bind(4, wall_clock_ms());
+        intent.exec();
+        begun = true;
+    });
+    return begun;
+}
+
+bool CutStore::finish_sheet(const CutRecord& wanted, const CutProgress& progress) {
+    bool finished = false;
+    database_.write([&](SQLite::Database& database) {
+        const auto cut = find_cut(database, wanted.id);
+        if (!cut || (cut->state != CutState::Cutting && cut->state != CutState::Paused)) {
+            return;
+        }
+        set_progress(database, cut->id, progress);
+        count_sheet_as_cut(database, *cut);
+        if (!cut->on_last_sheet()) {
+            SQLite::Statement next(database, "UPDATE cut SET position = position + 1 WHERE id = ?");
+            next.bind(1, cut->id);
+            next.exec();
+            set_progress(database, cut->id, {});
+        }
+        finished = move_cut(database, *cut,
+                            cut->on_last_sheet() ? CutState::Done : CutState::AwaitingSheet, "");
+    });
+    return finished;
+}
+
+void CutStore::record_progress(const std::string& id, const CutProgress& progress) {
+    database_.write([&](SQLite::Database& database) { set_progress(database, id, progress); });
+}
+
+std::int64_t CutStore::count(CutState state) const {
+    std::int64_t counted = 0;
+    database_.read([&](SQLite::Database& database) {
+        SQLite::Statement query(database, "SELECT count(*) FROM cut WHERE state = ?");
+        query.bind(1, std::string(to_string(state)));
+        counted = query.executeStep() ? query.getColumn(0).getInt64() : 0;
+    });
+    return counted;
+}
+
+std::vector<std::string> CutStore::recover() {
+    std::vector<std::string> devices;
+    database_.write([&](SQLite::Database& database) {
+        std::vector<CutRecord> open;
+        SQLite::Statement query(
+            database, std::string(kSelect) + "WHERE state IN ('armed','cutting','paused')");
+        while (query.executeStep()) {
+            open.push_back(cut_from(database, query));
+        }
+        for (const CutRecord& cut : open) {
+            if (cut.state == CutState::Armed) {
+                const bool between = cut.position > 0;
+                move_cut(database, cut, between ? CutState::AwaitingSheet : CutState::Waiting, "");
+                continue;
+            }
+            devices.push_back(cut.device);
+            move_cut(
+                database, cut, CutState::Interrupted,
+                fmt::format("the daemon died while sheet {} was being cut: at least {} of {} lines "
+                            "were done; cut this sheet again on fresh material",
+                            cut.sheet(), cut.lines_acknowledged, cut.lines_total));
+        }
+    });
+    return devices;
+}
+
+}  // namespace leafcutter::server

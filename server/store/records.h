@@ -1,0 +1,100 @@
+// What the store keeps, as plain values. Times are milliseconds since 1970 (wall clock, for display
+// only: order is that of event numbers). JSON members are text that the store never looks into.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/queue/states.h"
+
+namespace leafcutter::server {
+
+struct SourceFile {
+    std::string name;  // As the client gave it; data only, never a path.
+    std::int64_t bytes = 0;
+    std::string sha256;  // Lower-case hex; the blob that holds it.
+};
+
+struct JobFailure {
+    std::string
+        kind;  // "bad-file", "bad-mesh", "bad-option", "not-supported", "internal", "crashed".
+    std::string code;
+    std::string detail;
+};
+
+struct SheetRecord {
+    int number = 1;
+    std::string material;
+    std::string program_sha256;  // Of the G-code; empty if the sheet has none.
+    double estimated_s = 0.0;
+    bool cut = false;
+};
+
+struct ArtifactRecord {
+    std::string path;  // Inside the package.
+    std::int64_t bytes = 0;
+    std::string sha256;
+    std::string media_type;
+};
+
+struct JobRecord {
+    std::string id;  // "j_…"
+    std::int64_t ordinal = 0;
+    std::string name;
+    JobState state = JobState::Queued;
+    std::int64_t version = 1;
+    std::int64_t created_ms = 0;
+    std::int64_t updated_ms = 0;
+    SourceFile file;
+    std::string params_json = "{}";
+    int attempt = 0;
+    std::optional<JobFailure> failure;
+    std::optional<std::string> summary_json;
+    std::vector<SheetRecord> sheets;
+    std::vector<std::string> cuts;
+};
+
+struct CutRecord {
+    std::string id;  // "c_…"
+    std::int64_t ordinal = 0;
+    std::string job;
+    std::string device;
+    std::vector<int> sheets;   // In the order they are cut.
+    std::size_t position = 0;  // Index into `sheets` of the current one.
+    CutState state = CutState::Waiting;
+    std::int64_t version = 1;
+    std::string program_sha256;  // Of the current sheet's program.
+    std::int64_t lines_total = 0;
+    std::int64_t lines_sent = 0;
+    std::int64_t lines_acknowledged = 0;
+    std::string reason;
+    std::int64_t created_ms = 0;
+    std::int64_t updated_ms = 0;
+
+    int sheet() const { return sheets.at(position); }
+    bool on_last_sheet() const { return position + 1 == sheets.size(); }
+};
+
+struct DeviceRecord {
+    std::string id;
+    std::string name;
+    std::string uri;
+    bool auto_start = false;
+    std::array<double, 2> bed_mm{600.0, 400.0};
+};
+
+// One line of the append-only log; `seq` is the id that event streams carry.
+struct EventRecord {
+    std::int64_t seq = 0;
+    std::int64_t at_ms = 0;
+    std::string type;     // "job" or "cut".
+    std::string subject;  // Its id.
+    std::string job;      // The job it belongs to.
+    std::string note;     // "queued -> computing", "removed".
+};
+
+}  // namespace leafcutter::server

@@ -1,0 +1,143 @@
+#include "server/store/schema.h"
+
+#include <array>
+#include <string>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+namespace leafcutter::server {
+
+namespace {
+
+// Migration N leads to user_version N + 1. Never edit one that was released: add another.
+constexpr std::array kMigrations{R"sql(
+CREATE TABLE job(
+    ordinal INTEGER PRIMARY KEY AUTOINCREMENT,
+    id TEXT NOT NULL UNIQUE,
+    name TEXT NOT NULL,
+    state TEXT NOT NULL,
+    version INTEGER NOT NULL DEFAULT 1,
+    created_ms INTEGER NOT NULL,
+    updated_ms INTEGER NOT NULL,
+    file_name TEXT NOT NULL,
+    file_bytes INTEGER NOT NULL,
+    file_sha256 TEXT NOT NULL,
+    params TEXT NOT NULL,
+    attempt INTEGER NOT NULL DEFAULT 0,
+    error_kind TEXT, error_code TEXT, error_detail TEXT,
+    summary TEXT);
+CREATE INDEX job_queued ON job(ordinal) WHERE state = 'queued';
+CREATE INDEX job_state ON job(state, ordinal);
+CREATE INDEX job_blob ON job(file_sha256);
+
+CREATE TABLE artifact(
+    job TEXT NOT NULL REFERENCES job(id) ON DELETE CASCADE,
+    position INTEGER NOT NULL,
+    path TEXT NOT NULL,
+    bytes INTEGER NOT NULL,
+    sha256 TEXT NOT NULL,
+    media_type TEXT NOT NULL,
+    PRIMARY KEY(job, path)) WITHOUT ROWID;
+CREATE INDEX artifact_blob ON artifact(sha256);
+
+CREATE TABLE sheet(
+    job TEXT NOT NULL REFERENCES job(id) ON DELETE CASCADE,
+    number INTEGER NOT NULL,
+    material TEXT NOT NULL,
+    program_sha256 TEXT NOT NULL,
+    estimated_s REAL NOT NULL,
+    cut INTEGER NOT NULL DEFAULT 0,
+    PRIMARY KEY(job, number)) WITHOUT ROWID;
+
+CREATE TABLE cut(
+    ordinal INTEGER PRIMARY KEY AUTOINCREMENT,
+    id TEXT NOT NULL UNIQUE,
+    job TEXT NOT NULL REFERENCES job(id) ON DELETE CASCADE,
+    device TEXT NOT NULL,
+    sheets TEXT NOT NULL,
+    position INTEGER NOT NULL DEFAULT 0,
+    state TEXT NOT NULL,
+    version INTEGER NOT NULL DEFAULT 1,
+    lines_total INTEGER NOT NULL DEFAULT 0,
+    lines_sent INTEGER NOT NULL DEFAULT 0,
+    lines_acknowledged INTEGER NOT NULL DEFAULT 0,
+    reason TEXT NOT NULL DEFAULT '',
+    created_ms INTEGER NOT NULL,
+    updated_ms INTEGER NOT NULL);
+CREATE INDEX cut_of_job ON cut(job, ordinal);
+CREATE INDEX cut_of_device ON cut(device, state, ordinal);
+
+-- On disk before the beam may come on: which program was let loose, and when.
+CREATE TABLE cut_intent(
+    id INTEGER PRIMARY KEY AUTOINCREMENT,
+    cut TEXT NOT NULL,
+    sheet INTEGER NOT NULL,
+    program_sha256 TEXT NOT NULL,
+    at_ms INTEGER NOT NULL);
+
+CREATE TABLE device(
+    id TEXT PRIMARY KEY,
+    name TEXT NOT NULL,
+    uri TEXT NOT NULL,
+    auto_start INTEGER NOT NULL,
+    bed_width_mm REAL NOT NULL,
+    bed_height_mm REAL NOT NULL) WITHOUT ROWID;
+
+CREATE TABLE event(
+    seq INTEGER PRIMARY KEY AUTOINCREMENT,
+    at_ms INTEGER NOT NULL,
+    type TEXT NOT NULL,
+    subject TEXT NOT NULL,
+    job TEXT NOT NULL,
+    note TEXT NOT NULL);
+
+CREATE TABLE idempotency(
+    key TEXT PRIMARY KEY,
+    request_hash TEXT NOT NULL,
+    job TEXT NOT NULL,
+    at_ms INTEGER NOT NULL) WITHOUT ROWID;
+
+INSERT INTO device VALUES('sim', 'Simulated laser', 'sim:grbl', 0, 600, 400);
+)sql"};
+
+// Durability first: FULL syncs every commit, and only the writer's own checkpoints touch the file.
+constexpr const char* kPragmas = R"sql(
+PRAGMA journal_mode = WAL;
+PRAGMA synchronous = FULL;
+PRAGMA foreign_keys = ON;
+PRAGMA mmap_size = 0;
+PRAGMA trusted_schema = OFF;
+PRAGMA cell_size_check = ON;
+PRAGMA journal_size_limit = 67108864;
+PRAGMA wal_autocheckpoint = 0;
+)sql";
+
+}  // namespace
+
+void prepare_schema(SQLite::Database& database) {
+    try {
+        database.exec(kPragmas);
+        const std::string verdict = database.execAndGet("PRAGMA quick_check(1)").getString();
+        if (verdict != "ok") {
+            throw DatabaseUnusable("the database is damaged: " + verdict);
+        }
+    } catch (const SQLite::Exception& error) {
+        throw DatabaseUnusable(fmt::format("the database can't be opened: {}", error.what()));
+    }
+    const int version = database.execAndGet("PRAGMA user_version").getInt();
+    const int known = static_cast<int>(kMigrations.size());
+    if (version > known) {
+        throw DatabaseUnusable(
+            fmt::format("the database has schema {}, this Leafcutter knows {}: use the newer one",
+                        version, known));
+    }
+    for (int step = version; step < known; ++step) {
+        SQLite::Transaction transaction(database);
+        database.exec(kMigrations[static_cast<std::size_t>(step)]);
+        database.exec(fmt::format("PRAGMA user_version = {}", step + 1));
+        transaction.commit();
+    }
+}
+
+}  // namespace leafcutter::server

@@ -1,0 +1,34 @@
+// Everything the daemon remembers, in one folder: leafcutter.db and blobs/.
+
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "server/store/blobs.h"
+#include "server/store/cut_store.h"
+#include "server/store/database.h"
+#include "server/store/device_store.h"
+#include "server/store/event_log.h"
+#include "server/store/job_store.h"
+#include "server/store/state_dir.h"
+
+namespace leafcutter::server {
+
+struct Store {
+    // Locks the folder, opens, migrates and recovers. `after_commit` is called by the writer's
+    // thread and must not wait. Throws StateDirUnusable, DatabaseUnusable.
+    Store(const std::filesystem::path& folder, std::function<void()> after_commit);
+
+    StateDir folder;
+    Database database;
+    Blobs blobs;
+    JobStore jobs;
+    CutStore cuts;
+    DeviceStore devices;
+    EventLog events;
+    std::vector<std::string> interrupted_devices;  // Whose cut a dead daemon left in mid-beam.
+};
+
+}  // namespace leafcutter::server
