@@ -56,7 +56,8 @@ double GrblMachine::advance_motion(double seconds) {
 
 bool GrblMachine::at_rest() const {
     const bool waiting = !actions_.empty() && !blocked();
-    return motion_.standing() && state_ != State::Jog && busy_until_s_ <= now_s_ && !waiting && (rx_.empty() || blocked());
+    return motion_.standing() && state_ != State::Jog && busy_until_s_ <= now_s_ && !waiting &&
+           (rx_.empty() || blocked());
 }
 
 double GrblMachine::beam_power() const {
