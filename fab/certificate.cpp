@@ -140,6 +140,7 @@ public:
         const std::vector<BurntSegment> burnt = burnt_segments(gcode);
         const std::vector<Ring> contours = closed_contours(burnt);
         std::vector<Bounds> bounds;
+        bounds.reserve(contours.size());
         for (const Ring& contour : contours) {
             bounds.push_back(bounds_of(contour));
         }

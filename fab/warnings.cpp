@@ -50,6 +50,7 @@ std::vector<std::string> joined_warnings(const std::vector<std::string>& warning
         }
     }
     std::vector<std::string> lines;
+    lines.reserve(kinds.size());
     for (const Kind& kind : kinds) {
         lines.push_back(line_of(kind));
     }
