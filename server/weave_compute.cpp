@@ -29,7 +29,8 @@ std::vector<SheetPlan> sheets_in(const fab::Package& package) {
     if (report == nullptr) {
         return sheets;
     }
-    for (const json& sheet : json::parse(report->bytes).at("cut").at("sheets")) {
+    const json parsed = json::parse(report->bytes);  // Outlives the loop over a part of it.
+    for (const json& sheet : parsed.at("cut").at("sheets")) {
         SheetPlan plan;
         plan.number = sheet.at("sheet").get<int>();
         plan.material = sheet.at("material").get<std::string>();
