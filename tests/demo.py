@@ -136,7 +136,7 @@ def keep_burn(burn_log, begun, folder, sheet, logs):
 
 def audit(binary, package, logs):
     result = subprocess.run(
-        [str(binary), "audit", str(package), "--json", "--burn", *map(str, logs)],
+        [str(binary), "audit", str(package), "--burn", *map(str, logs)],
         capture_output=True, text=True)
     print(result.stdout.strip() or result.stderr.strip())
     return result.returncode == 0
