@@ -8,8 +8,9 @@
 // difference over the mean edge of the mesh is the relative deviation.
 //
 // So what counts is everything between mesh and beam: unfolding, placement, kerf offset, rounding
-// of numbers, pieces left out (they deviate by 1). Clearance and crimp are allowances and cancel
-// out. A slip along a straight side is seen at its ends only.
+// of numbers, notches narrower than the kerf (the beam leaves them filled), pieces left out (they
+// deviate by 1). Clearance and crimp are allowances and cancel out. A slip along a straight side is
+// seen at its ends only.
 
 #pragma once
 

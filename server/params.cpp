@@ -21,11 +21,11 @@ using fab::JobParams;
 using geometry::FoliationMode;
 using nlohmann::json;
 
-template <typename Value>
+template <typename Value, std::size_t kNames>
 void read_choice(ObjectReader& reader,
                  std::string_view key,
                  Value& target,
-                 const Names<Value>& names) {
+                 const ObjectReader::Choice<Value> (&names)[kNames]) {
     reader.choice<Value>(key, target, names);
 }
 
@@ -158,16 +158,17 @@ void refuse_later_modes(ObjectReader& reader, const fab::FoliationParams& foliat
     if (std::find(kComputed.begin(), kComputed.end(), foliation.mode) == kComputed.end()) {
         refuse_unsupported(reader.path_of("mode"), name_of(kModes, foliation.mode));
     }
-    const Names<int> pants = {{"reeb", 0}, {"handle-loops", 1}, {"tunnel-loops", 2}, {"user", 3}};
+    constexpr ObjectReader::Choice<int> kPants[] = {
+        {"reeb", 0}, {"handle-loops", 1}, {"tunnel-loops", 2}, {"user", 3}};
     int chosen_pants = 0;
-    read_choice(reader, "pants", chosen_pants, pants);
+    read_choice(reader, "pants", chosen_pants, kPants);
     if (chosen_pants != 0) {
         refuse_unsupported(reader.path_of("pants"), "pants decompositions");
     }
-    const Names<int> functions = {{"auto", 0}, {"harmonic", 0}, {"x", 1},
-                                  {"y", 1},    {"z", 1},        {"fiedler", 1}};
+    constexpr ObjectReader::Choice<int> kFunctions[] = {
+        {"auto", 0}, {"harmonic", 0}, {"x", 1}, {"y", 1}, {"z", 1}, {"fiedler", 1}};
     int function = 0;
-    read_choice(reader, "function", function, functions);
+    read_choice(reader, "function", function, kFunctions);
     if (function != 0) {
         refuse_unsupported(reader.path_of("function"), "a function for the pants decomposition");
     }

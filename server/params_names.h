@@ -2,18 +2,15 @@
 
 #pragma once
 
+#include <cstddef>
 #include <string>
-#include <vector>
 
 #include "fab/job_params.h"
 #include "server/json_reader.h"
 
 namespace leafcutter::server {
 
-template <typename Value>
-using Names = std::vector<ObjectReader::Choice<Value>>;
-
-inline const Names<geometry::FoliationMode> kModes = {
+inline constexpr ObjectReader::Choice<geometry::FoliationMode> kModes[] = {
     {"auto", geometry::FoliationMode::Auto},
     {"pants", geometry::FoliationMode::Pants},
     {"one-form", geometry::FoliationMode::OneForm},
@@ -23,29 +20,29 @@ inline const Names<geometry::FoliationMode> kModes = {
     {"sphere-polar", geometry::FoliationMode::SpherePolar},
     {"sphere-pillowcase", geometry::FoliationMode::SpherePillowcase},
 };
-inline const Names<geometry::TorusRings> kTorusRings = {
+inline constexpr ObjectReader::Choice<geometry::TorusRings> kTorusRings[] = {
     {"short", geometry::TorusRings::Short},
     {"long", geometry::TorusRings::Long},
 };
-inline const Names<geometry::Spacing> kSpacings = {
+inline constexpr ObjectReader::Choice<geometry::Spacing> kSpacings[] = {
     {"uniform", geometry::Spacing::Uniform},
     {"curvature", geometry::Spacing::Curvature},
     {"curvature-area", geometry::Spacing::CurvatureArea},
 };
-inline const Names<geometry::Junctions> kJunctions = {
+inline constexpr ObjectReader::Choice<geometry::Junctions> kJunctions[] = {
     {"conforming", geometry::Junctions::Conforming},
     {"independent", geometry::Junctions::Independent},
 };
-inline const Names<geometry::Parity> kParities = {
+inline constexpr ObjectReader::Choice<geometry::Parity> kParities[] = {
     {"even", geometry::Parity::Even},
     {"any", geometry::Parity::Any},
 };
-inline const Names<geometry::Planarity> kPlanarities = {
+inline constexpr ObjectReader::Choice<geometry::Planarity> kPlanarities[] = {
     {"off", geometry::Planarity::Off},
     {"gentle", geometry::Planarity::Gentle},
     {"full", geometry::Planarity::Full},
 };
-inline const Names<fab::WeavePattern> kPatterns = {
+inline constexpr ObjectReader::Choice<fab::WeavePattern> kPatterns[] = {
     {"plain", fab::WeavePattern::Plain},
     {"twill-2x2", fab::WeavePattern::Twill2x2},
     {"double-warp", fab::WeavePattern::DoubleWarp},
@@ -53,29 +50,29 @@ inline const Names<fab::WeavePattern> kPatterns = {
     {"satin-5", fab::WeavePattern::Satin5},
     {"basket-2x2", fab::WeavePattern::Basket2x2},
 };
-inline const Names<fab::ColumnRuns> kColumnRuns = {
+inline constexpr ObjectReader::Choice<fab::ColumnRuns> kColumnRuns[] = {
     {"per-cylinder", fab::ColumnRuns::PerCylinder},
     {"through", fab::ColumnRuns::Through},
 };
-inline const Names<fab::CellMarks> kCellMarks = {
+inline constexpr ObjectReader::Choice<fab::CellMarks> kCellMarks[] = {
     {"ticks", fab::CellMarks::Ticks},
     {"lines", fab::CellMarks::Lines},
     {"none", fab::CellMarks::None},
 };
-inline const Names<fab::Rotation> kRotations = {
+inline constexpr ObjectReader::Choice<fab::Rotation> kRotations[] = {
     {"free", fab::Rotation::Free},
     {"0,180", fab::Rotation::Half},
     {"0,90,180,270", fab::Rotation::Quarter},
     {"0", fab::Rotation::Fixed},
 };
-inline const Names<fab::Dialect> kDialects = {
+inline constexpr ObjectReader::Choice<fab::Dialect> kDialects[] = {
     {"grbl", fab::Dialect::Grbl},
     {"marlin", fab::Dialect::Marlin},
     {"smoothie", fab::Dialect::Smoothie},
 };
 
-template <typename Value>
-std::string name_of(const Names<Value>& names, Value value) {
+template <typename Value, std::size_t kNames>
+std::string name_of(const ObjectReader::Choice<Value> (&names)[kNames], Value value) {
     for (const auto& choice : names) {
         if (choice.value == value) {
             return std::string(choice.name);
