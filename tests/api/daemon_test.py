@@ -1,0 +1,289 @@
+#!/usr/bin/env python3
+"""The daemon from outside, on the loopback interface alone: killed again and again, run twice, and
+attacked. Usage: daemon_test.py LEAFCUTTER"""
+import http.client
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+BINARY = sys.argv.pop(1) if len(sys.argv) > 1 else "build/release/leafcutter"
+SQUARE = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Daemon:
+    def __init__(self, state, port):
+        self.port = port
+        self.process = subprocess.Popen(
+            [BINARY, "serve", "--state", str(state), "--listen", f"127.0.0.1:{port}"],
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        line = self.process.stdout.readline()
+        if "http://" not in line:
+            raise AssertionError(f"the daemon did not start: {line!r}")
+
+    def call(self, method, path, body=None, headers=None):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        try:
+            connection.request(method, path, body, headers or {})
+            answer = connection.getresponse()
+            return answer.status, answer.read()
+        finally:
+            connection.close()
+
+    def rss_mb(self):
+        status = Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(re.search(r"VmRSS:\s+(\d+)", status).group(1)) / 1024
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+        self.process.stdout.close()
+
+    def stop(self):
+        self.process.send_signal(signal.SIGTERM)
+        status = self.process.wait(timeout=20)
+        self.process.stdout.close()
+        return status
+
+
+def form(key, name):
+    boundary = "b" + key
+    body = (f"--{boundary}\r\nContent-Disposition: form-data; name=\"name\"\r\n\r\n{name}\r\n"
+            f"--{boundary}\r\nContent-Disposition: form-data; name=\"mesh\"; filename=\"s.off\"\r\n\r\n"
+            ).encode() + SQUARE + f"\r\n--{boundary}--\r\n".encode()
+    return body, {"Content-Type": f"multipart/form-data; boundary={boundary}", "Idempotency-Key": key}
+
+
+class Killed(unittest.TestCase):
+    def test_nothing_acknowledged_is_lost(self):
+        """Posts from four threads while the daemon dies five times; every answer must hold afterwards,
+        and a repeated key must find its job."""
+        with tempfile.TemporaryDirectory() as folder:
+            acknowledged = {}
+            lock = threading.Lock()
+
+            def post(daemon, prefix):
+                for number in range(1000):
+                    key = f"{prefix}-{number}"
+                    try:
+                        status, answer = daemon.call("POST", "/api/v1/jobs", *form(key, key))
+                    except (OSError, http.client.HTTPException):
+                        return
+                    if status == 201:
+                        with lock:
+                            acknowledged[key] = json.loads(answer)["id"]
+
+            for life in range(5):
+                daemon = Daemon(folder, free_port())
+                posters = [threading.Thread(target=post, args=(daemon, f"l{life}t{i}")) for i in range(4)]
+                for poster in posters:
+                    poster.start()
+                time.sleep(0.3 + 0.17 * life)
+                daemon.kill()
+                for poster in posters:
+                    poster.join()
+            self.assertGreater(len(acknowledged), 20)
+            daemon = Daemon(folder, free_port())
+            try:
+                for key, job in acknowledged.items():
+                    status, answer = daemon.call("GET", f"/api/v1/jobs/{job}")
+                    self.assertEqual(status, 200, key)
+                    self.assertEqual(json.loads(answer)["name"], key)
+                key, job = next(iter(acknowledged.items()))
+                status, answer = daemon.call("POST", "/api/v1/jobs", *form(key, key))
+                self.assertEqual((status, json.loads(answer)["id"]), (201, job))
+                self.assertEqual(os.listdir(Path(folder) / "blobs" / "incoming"), [])
+            finally:
+                self.assertEqual(daemon.stop(), 0)
+
+
+class CutShort(unittest.TestCase):
+    def cut_in_mid_beam(self, daemon):
+        body, headers = form("cut", "cut")
+        job = json.loads(daemon.call("POST", "/api/v1/jobs", body, headers)[1])["id"]
+        self.wait(daemon, f"/api/v1/jobs/{job}", lambda job: job["state"] == "ready")
+        status, answer = daemon.call("POST", f"/api/v1/jobs/{job}/cuts", '{"device": "sim"}',
+                                     {"Content-Type": "application/json"})
+        self.assertEqual(status, 201, answer)
+        path = "/api/v1/cuts/" + json.loads(answer)["id"]
+        cut = self.wait(daemon, path, lambda cut: "start" in cut["actions"])
+        consent = {"program_sha256": "0" * 64, "bed_clear": True}
+        as_json = {"Content-Type": "application/json"}
+        self.assertEqual(daemon.call("POST", path + "/start", json.dumps(consent), as_json)[0], 409)
+        consent["program_sha256"] = cut["program_sha256"]
+        self.assertEqual(daemon.call("POST", path + "/start", json.dumps(consent), as_json)[0], 202)
+        self.wait(daemon, path, lambda cut: cut["progress"]["lines_acknowledged"] > 5)
+        return path
+
+    def wait(self, daemon, path, condition):
+        deadline = time.monotonic() + 30
+        while time.monotonic() < deadline:
+            thing = json.loads(daemon.call("GET", path)[1])
+            if condition(thing):
+                return thing
+            time.sleep(0.05)
+        self.fail(f"{path} stays {thing}")
+
+    def test_a_cut_in_mid_beam_is_interrupted_by_death_and_by_a_stop(self):
+        for end in (Daemon.kill, Daemon.stop):
+            with self.subTest(end=end.__name__), tempfile.TemporaryDirectory() as folder:
+                daemon = Daemon(folder, free_port())
+                path = self.cut_in_mid_beam(daemon)
+                end(daemon)
+                daemon = Daemon(folder, free_port())
+                try:
+                    cut = json.loads(daemon.call("GET", path)[1])
+                    self.assertEqual((cut["state"], cut["actions"]), ("interrupted", []))
+                    self.assertIn("cut this sheet again", cut["reason"])
+                finally:
+                    daemon.stop()
+
+
+class Twice(unittest.TestCase):
+    def refused(self, state, port):
+        begin = time.monotonic()
+        second = subprocess.run([BINARY, "serve", "--state", state, "--listen", f"127.0.0.1:{port}"],
+                                capture_output=True, text=True, timeout=20)
+        self.assertEqual(second.returncode, 1)
+        self.assertLess(time.monotonic() - begin, 5)
+        return second.stderr
+
+    def test_a_second_daemon_is_refused_the_state_and_the_port(self):
+        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as other:
+            daemon = Daemon(folder, free_port())
+            try:
+                self.assertIn("belongs to a daemon", self.refused(folder, free_port()))
+                self.assertIn("cannot listen", self.refused(other, daemon.port))
+            finally:
+                daemon.stop()
+
+    def test_an_address_that_is_not_loopback_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            answer = subprocess.run([BINARY, "serve", "--state", folder, "--listen", "0.0.0.0:0"],
+                                    capture_output=True, text=True, timeout=20)
+            self.assertEqual(answer.returncode, 2)
+            self.assertIn("loopback", answer.stderr)
+
+
+class Attacked(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.daemon = Daemon(cls.folder.name, free_port())
+
+    @classmethod
+    def tearDownClass(cls):
+        status = cls.daemon.stop()
+        cls.folder.cleanup()
+        assert status == 0, status
+
+    def tearDown(self):
+        self.assertEqual(self.daemon.call("GET", "/healthz")[0], 200)
+        self.assertLess(self.daemon.rss_mb(), 150)
+
+    def connect(self):
+        return socket.create_connection(("127.0.0.1", self.daemon.port), timeout=10)
+
+    def status_of(self, head, body=b""):
+        with self.connect() as client:
+            try:
+                client.sendall(head + body)
+            except OSError:
+                pass
+            answer = client.makefile("rb").readline()
+            return int(answer.split()[1]) if answer else 0
+
+    def head(self, *lines, target="GET / HTTP/1.1"):
+        return "\r\n".join([target, "Host: localhost", *lines, "", ""]).encode()
+
+    def test_hostile_heads_are_refused(self):
+        post = "POST /api/v1/jobs HTTP/1.1"
+        many = ",".join(f"{i}-{i + 1}" for i in range(400))
+        self.assertEqual(self.status_of(self.head("Transfer-Encoding: chunked", target=post)), 411)
+        self.assertEqual(self.status_of(self.head("Content-Encoding: gzip", "Content-Length: 9", target=post),
+                                        b"123456789"), 415)
+        self.assertEqual(self.status_of(self.head("Content-Length: 1", "Content-Length: 2", target=post)), 400)
+        self.assertEqual(self.status_of(self.head(f"Range: bytes={many}")), 416)
+        self.assertEqual(self.status_of(self.head("REMOTE_ADDR: 1.1.1.1")), 400)
+        self.assertEqual(self.status_of(b"GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n"), 421)
+        self.assertEqual(self.status_of(self.head("Content-Length: 99999999999", target=post)), 413)
+
+    def test_endless_heads_are_cut(self):
+        self.assertEqual(self.status_of(b"GET / HTTP/1.1\r\nX: " + b"a" * 400_000), 431)
+        self.assertEqual(self.status_of(b"GET / HTTP/1.1\r\n" + b"X: a\r\n" * 5000), 431)
+
+    def test_deep_json_is_refused(self):
+        deep = b'{"a":' * 100 + b"1" + b"}" * 100
+        status, answer = self.daemon.call("POST", "/api/v1/jobs", deep, {"Content-Type": "application/json"})
+        self.assertEqual((status, json.loads(answer)["code"]), (400, "bad-json"))
+
+    def test_slow_heads_cost_the_others_nothing(self):
+        drips = []
+        for _ in range(200):
+            client = self.connect()
+            client.sendall(b"GET / HTTP/1.1\r\nHo")
+            drips.append(client)
+        self.assertEqual(self.daemon.call("GET", "/healthz")[0], 200)
+        for client in drips:
+            client.close()
+
+    def test_two_hundred_listeners_hear_of_one_job(self):
+        listeners = []
+        for _ in range(200):
+            client = self.connect()
+            client.sendall(self.head(target="GET /api/v1/events HTTP/1.1"))
+            listeners.append(client)
+        self.assertEqual(self.daemon.call("GET", "/healthz")[0], 200)
+        status, answer = self.daemon.call("POST", "/api/v1/jobs", *form("heard", "heard"))
+        self.assertEqual(status, 201)
+        job = json.loads(answer)["id"].encode()
+        for client in listeners:
+            heard = b""
+            while b"event: job" not in heard or job not in heard:
+                piece = client.recv(65536)
+                self.assertTrue(piece)
+                heard += piece
+            client.close()
+
+    def test_events_are_replayed_without_a_gap(self):
+        for number in range(5):
+            self.daemon.call("POST", "/api/v1/jobs", *form(f"replay{number}", "replay"))
+        with self.connect() as client:
+            client.sendall(self.head("Last-Event-ID: 0", target="GET /api/v1/events HTTP/1.1"))
+            heard = b""
+            while len(re.findall(rb"id: (\d+)", heard)) < 10:
+                heard += client.recv(65536)
+            numbers = [int(n) for n in re.findall(rb"\nid: (\d+)\n", heard)]
+            self.assertEqual(numbers, list(range(1, len(numbers) + 1)))
+
+    def test_an_upload_cut_off_leaves_nothing(self):
+        body, headers = form("cutoff", "cutoff")
+        before = self.daemon.call("GET", "/api/v1/jobs?limit=200")[1].count(b"cutoff")
+        with self.connect() as client:
+            client.sendall(self.head(f"Content-Type: {headers['Content-Type']}",
+                                     f"Content-Length: {len(body) + 1000}",
+                                     target="POST /api/v1/jobs HTTP/1.1") + body[:-20])
+        deadline = time.monotonic() + 10
+        incoming = Path(self.folder.name) / "blobs" / "incoming"
+        while os.listdir(incoming) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        self.assertEqual(os.listdir(incoming), [])
+        self.assertEqual(self.daemon.call("GET", "/api/v1/jobs?limit=200")[1].count(b"cutoff"), before)
+
+
+if __name__ == "__main__":
+    unittest.main()
