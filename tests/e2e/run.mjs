@@ -37,12 +37,23 @@ async function assertAccessible(page, where) {
   }
 }
 
-test('the first page is live and accessible', async () => {
+// The steps of one story: where one fails, those after it would only wait in vain.
+let broken = '';
+function step(name, act) {
+  test(name, async () => {
+    assert.equal(broken, '', 'an earlier step failed');
+    broken = name;
+    await act();
+    broken = '';
+  });
+}
+
+step('the first page is live and accessible', async () => {
   await picture(desk.page, 'start-light');
   await assertAccessible(desk.page, 'start');
 });
 
-test('a mesh dropped on the page opens the form with good defaults', async () => {
+step('a mesh dropped on the page opens the form with good defaults', async () => {
   await drop(desk.page, [{ name: 'torus.off', text: torusOff() }]);
   await desk.page.waitForSelector('.new-job');
   assert.equal(await desk.page.inputValue('.draft-file input'), 'torus');
@@ -51,7 +62,7 @@ test('a mesh dropped on the page opens the form with good defaults', async () =>
   await assertAccessible(desk.page, 'form');
 });
 
-test('a wrong measure is said at once and cannot be sent', async () => {
+step('a wrong measure is said at once and cannot be sent', async () => {
   const width = desk.page.getByLabel('Strip width');
   await width.fill('-3');
   assert.match(await desk.page.innerText('.new-job [role=alert]'), /strip width/i);
@@ -60,7 +71,7 @@ test('a wrong measure is said at once and cannot be sent', async () => {
   await desk.page.getByLabel('Longest side').fill('200');
 });
 
-test('the job computes while its stages are watched', async () => {
+step('the job computes while its stages are watched', async () => {
   await desk.page.click('.new-job [type=submit]');
   await desk.page.waitForSelector('.job-page h1');
   jobAddress = desk.page.url();
@@ -69,10 +80,11 @@ test('the job computes while its stages are watched', async () => {
     await picture(desk.page, 'computing-light');
     await assertAccessible(desk.page, 'computing');
   }
-  await desk.page.waitForSelector('.model canvas[data-ready=true]', { timeout: kLong });
+  await desk.page.waitForSelector('.model canvas[data-ready=true], .failure', { timeout: kLong });
+  if (await desk.page.isVisible('.failure')) assert.fail(await desk.page.innerText('.failure'));
 });
 
-test('the weave is drawn in 3D, in every mode, and turns by keyboard', async () => {
+step('the weave is drawn in 3D, in every mode, and turns by keyboard', async () => {
   const canvas = desk.page.locator('.model canvas');
   const seen = new Set();
   for (const mode of ['Weft', 'Warp', 'Surface', 'Woven']) {
@@ -89,13 +101,13 @@ test('the weave is drawn in 3D, in every mode, and turns by keyboard', async () 
   await desk.page.keyboard.press('Home');
 });
 
-test('the sheets are drawn with every piece', async () => {
+step('the sheets are drawn with every piece', async () => {
   assert.ok((await desk.page.locator('.sheet .piece').count()) > 3);
   await picture(desk.page, 'ready-light');
   await assertAccessible(desk.page, 'ready');
 });
 
-test('a strip chosen in 3D lights up on its sheet, and back', async () => {
+step('a strip chosen in 3D lights up on its sheet, and back', async () => {
   const box = await desk.page.locator('.model canvas').boundingBox();
   await desk.page.locator('.model canvas').scrollIntoViewIfNeeded();
   for (const [fx, fy] of [[0.5, 0.72], [0.5, 0.5], [0.4, 0.65], [0.6, 0.4]]) {
@@ -113,7 +125,7 @@ test('a strip chosen in 3D lights up on its sheet, and back', async () => {
   assert.equal(await desk.page.inputValue('.strip-picker select'), id);
 });
 
-test('the sheet zooms and comes back', async () => {
+step('the sheet zooms and comes back', async () => {
   const view = () => desk.page.getAttribute('.sheet', 'viewBox');
   const whole = await view();
   await desk.page.locator('.sheets').getByRole('button', { name: 'Zoom in' }).click();
@@ -122,7 +134,7 @@ test('the sheet zooms and comes back', async () => {
   assert.equal(await view(), whole);
 });
 
-test('the package can be downloaded', async () => {
+step('the package can be downloaded', async () => {
   const files = desk.page.locator('.file-list a');
   assert.ok((await files.count()) >= 6);
   const href = await files.first().getAttribute('href');
@@ -142,7 +154,7 @@ async function confirmBed(page) {
   await page.keyboard.press('Enter');
 }
 
-test('nothing burns before the operator says that the bed is clear', async () => {
+step('nothing burns before the operator says that the bed is clear', async () => {
   if (target.device) await desk.page.selectOption('.cut-queue select', { label: target.device });
   await desk.page.getByRole('button', { name: 'Queue the cut' }).click();
   await desk.page.waitForSelector('.clear-bed');
@@ -156,7 +168,7 @@ test('nothing burns before the operator says that the bed is clear', async () =>
 const burntLength = () =>
   [...document.querySelectorAll('.burn path')].reduce((sum, path) => sum + path.getTotalLength(), 0);
 
-test('the burnt part grows while the machine cuts; pausing holds it', async () => {
+step('the burnt part grows while the machine cuts; pausing holds it', async () => {
   const { page } = desk;
   await page.evaluate(`globalThis.burntLength = ${burntLength}`);
   await page.waitForFunction(() => globalThis.burntLength() > 0, null, { timeout: kLong });
@@ -173,7 +185,7 @@ test('the burnt part grows while the machine cuts; pausing holds it', async () =
   await picture(page, 'cutting-light', { fullPage: false });
 });
 
-test('a phone shows the same cut, and nothing is wider than the screen', async () => {
+step('a phone shows the same cut, and nothing is wider than the screen', async () => {
   const phone = await openPage(browser, jobAddress, { viewport: kPhone, hasTouch: true, isMobile: true });
   await phone.page.waitForSelector('.model canvas[data-ready=true]', { timeout: kLong });
   await phone.page.waitForTimeout(400);
@@ -196,7 +208,7 @@ test('a phone shows the same cut, and nothing is wider than the screen', async (
   await phone.close();
 });
 
-test('every sheet is confirmed and cut until the job is done', async () => {
+step('every sheet is confirmed and cut until the job is done', async () => {
   const { page } = desk;
   for (let sheet = 0; sheet < 40; sheet += 1) {
     const next = page.locator('.clear-bed');

@@ -131,7 +131,7 @@ const readStatus: Reader<DeviceStatus> = (value, path) => {
     workPositionMm: get('work_position_mm', optional(list(number), [])),
     feedMmPerMin: get('feed_mm_per_min', optional(number, 0)),
     powerS: get('power_s', optional(number, 0)),
-    alarmCode: get('alarm_code', optional(number, null)),
+    alarmCode: get('alarm_code', optional(number, null)) || null, // Codes begin at 1.
     message: get('message', optional(text, '')),
     firmware: get('firmware', optional(text, '')),
   };
