@@ -217,8 +217,8 @@ private:
         std::string path;
         for (int row = 0; row < grid.rows; ++row) {
             for (int col = 0; col < grid.cols; ++col) {
-                const auto quad = static_cast<std::size_t>(first + row * grid.cols + col);
-                if (job_.weave.warp_on_top[quad] != 0) {
+                const int quad = first + row * grid.cols + col;
+                if (job_.weave.warp_on_top[static_cast<std::size_t>(quad)] != 0) {
                     fmt::format_to(std::back_inserter(path), "M{} {}h1v1h-1z", col,
                                    grid.rows - 1 - row);
                 }
