@@ -10,7 +10,8 @@
 namespace leafcutter::fab {
 
 // Strokes of `text` with its base line starting at the origin, running along +x, capitals 1 high.
-// Knows digits, capital letters and . - + / : ( ) # and arrows '<' '>'; lower case is drawn as upper.
+// Knows digits, capital letters and . - + / : ( ) # and arrows '<' '>'; lower case is drawn as
+// upper.
 std::vector<Polyline> text_strokes(std::string_view text);
 
 // Width of `text` at height 1.

@@ -14,7 +14,8 @@
 namespace leafcutter::fab {
 
 using geometry::Family;
-using Ring = std::vector<Eigen::Vector2d>;  // Simple, counter-clockwise, closing point not repeated.
+using Ring =
+    std::vector<Eigen::Vector2d>;  // Simple, counter-clockwise, closing point not repeated.
 using Polyline = std::vector<Eigen::Vector2d>;
 
 struct Strip {
@@ -34,24 +35,24 @@ enum class Operation { Engrave, Score, Cut };
 // Something burnt that does not cut: a line, or text drawn with the stroke font.
 struct Mark {
     Operation operation = Operation::Engrave;
-    Polyline path;     // Empty for text.
-    std::string text;  // Empty for a line.
+    Polyline path;                                 // Empty for text.
+    std::string text;                              // Empty for a line.
     Eigen::Vector2d at = Eigen::Vector2d::Zero();  // Text: left end of its base line.
     double angle_deg = 0.0;
     double height_mm = 0.0;
 };
 
 struct Piece {
-    std::string id;    // "W12.1"
+    std::string id;  // "W12.1"
     std::string strip;
     Family family = Family::Weft;
     int first_cell = 0;  // Into the strip's quads; closed strips wrap.
     int cell_count = 0;
-    Polyline left;   // cell_count + 1 rung ends: exact unfolding, isometric over `bend`.
+    Polyline left;  // cell_count + 1 rung ends: exact unfolding, isometric over `bend`.
     Polyline right;
     std::vector<Bend> bend;
-    Ring outline;             // What is cut, before kerf: with clearance, crimp, tabs.
-    Polyline cut_left;        // The rung ends as they come to lie on the outline.
+    Ring outline;       // What is cut, before kerf: with clearance, crimp, tabs.
+    Polyline cut_left;  // The rung ends as they come to lie on the outline.
     Polyline cut_right;
     std::vector<Mark> marks;  // Inside the outline.
 };
