@@ -1,5 +1,5 @@
-// Holds a burn against its plan: what a machine (simulated, or read back from G-code) burnt, against
-// the sheet's outlines and marks.
+// Holds a burn against its plan: what a machine (simulated, or read back from G-code) burnt,
+// against the sheet's outlines and marks.
 
 #pragma once
 

@@ -1,5 +1,5 @@
-// Everything a job can be told, as typed values with the defaults of the documentation. JSON comes and
-// goes in server/params; nothing here knows of it.
+// Everything a job can be told, as typed values with the defaults of the documentation. JSON comes
+// and goes in server/params; nothing here knows of it.
 
 #pragma once
 

@@ -1,5 +1,5 @@
-// The files of a finished job, as documented in docs (contract section 2): held in memory, written by
-// whoever asked for them.
+// The files of a finished job, as documented in docs (contract section 2): held in memory, written
+// by whoever asked for them.
 
 #pragma once
 

@@ -1,5 +1,5 @@
-// What the pure core may know of its surroundings: a stop request, a thread budget, and whom to tell
-// how far it is. No clock, no logger, no globals.
+// What the pure core may know of its surroundings: a stop request, a thread budget, and whom to
+// tell how far it is. No clock, no logger, no globals.
 
 #pragma once
 
@@ -22,7 +22,8 @@ struct Context {
     // Seconds since any fixed moment, for reports of time spent. May be empty: then reports say 0.
     std::function<double()> clock_s;
 
-    // Throws Cancelled after a stop request. Called at least every few tens of milliseconds of work.
+    // Throws Cancelled after a stop request. Called at least every few tens of milliseconds of
+    // work.
     void check() const {
         if (stop.stop_requested()) {
             throw Cancelled();

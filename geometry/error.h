@@ -1,7 +1,7 @@
 // The typed exceptions of the pure core (geometry and fab).
 //
-// Every message names what is wrong, where (line, vertex, face, edge) and what to do about it. `code`
-// is a stable short identifier for programs ("non-manifold-edges"), `what()` is for people.
+// Every message names what is wrong, where (line, vertex, face, edge) and what to do about it.
+// `code` is a stable short identifier for programs ("non-manifold-edges"), `what()` is for people.
 
 #pragma once
 

@@ -14,8 +14,8 @@ struct Topology {
     int edges = 0;
     int faces = 0;
     int components = 0;
-    int euler = 0;  // Of all components together.
-    int genus = 0;  // Sum over components.
+    int euler = 0;                                 // Of all components together.
+    int genus = 0;                                 // Sum over components.
     std::vector<std::vector<int>> boundary_loops;  // Vertices of each loop, surface to the left.
     std::vector<int> component_of_face;
 };
