@@ -12,7 +12,7 @@ struct EmbeddedFile {
     std::string_view bytes;
 };
 
-// Written by cmake/embed_files.cmake.
+// Written by server/http/embed_files.cmake.
 std::span<const EmbeddedFile> embedded_files();
 
 // Null if there is none of that path.

@@ -1,4 +1,4 @@
-# Builds the dashboard: cmake -DWEB=DIR -DSTAMP=FILE -P build_web.cmake
+# Builds the dashboard: cmake -DWEB=DIR -DSTAMP=FILE -P build.cmake
 #
 # Packages are installed only where they are missing, so that a build needs no network twice.
 

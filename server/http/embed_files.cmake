@@ -28,7 +28,7 @@ if(DASHBOARD)
     endforeach()
 endif()
 
-file(WRITE "${OUT}" "// Written by cmake/embed_files.cmake.
+file(WRITE "${OUT}" "// Written by server/http/embed_files.cmake.
 #include <cstddef>
 #include <vector>
 
