@@ -176,7 +176,7 @@ export function JobPage(props: { readonly id: string }) {
           <Warnings job={job} />
         </div>
       ) : (
-        <StageRow job={job} />
+        (job.error === null || job.progress.stage !== '') && <StageRow job={job} />
       )}
       {finished && <Result job={job} />}
     </div>

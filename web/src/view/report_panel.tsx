@@ -1,7 +1,6 @@
 // The report's figures.
 
-import { figure } from '../lib/format.ts';
-import { duration } from '../lib/format.ts';
+import { duration, figure } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
 import type { QualityName, ReportFigures } from '../state/report.ts';
 import { Panel } from './controls.tsx';
@@ -9,6 +8,12 @@ import { Panel } from './controls.tsx';
 function measure(name: QualityName, value: number | null): string {
   if (value === null) return '–';
   return `${figure(value)}${name.endsWith('_deg') ? '°' : ' %'}`;
+}
+
+const kShortS = 10; // Below this, whole seconds say too little.
+
+function computedIn(seconds: number): string {
+  return seconds < kShortS ? `${figure(seconds, 2)} s` : duration(seconds);
 }
 
 function Fact(props: { readonly name: string; readonly value: string | null }) {
@@ -35,7 +40,7 @@ function Facts(props: { readonly facts: ReportFigures['facts'] }) {
         name={words.certificate}
         value={facts.certificate === null ? null : words.certificateValue(`${figure(facts.certificate * 100, 2)} %`)}
       />
-      <Fact name={words.time} value={facts.totalS === null ? null : duration(facts.totalS)} />
+      <Fact name={words.time} value={facts.totalS === null ? null : computedIn(facts.totalS)} />
     </dl>
   );
 }
