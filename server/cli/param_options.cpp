@@ -13,7 +13,7 @@ nlohmann::json wanted_params(const std::string& params_file,
                              const std::vector<std::string>& assignments) {
     nlohmann::json params = nlohmann::json::object();
     if (!params_file.empty()) {
-        constexpr std::size_t kMostBytes = 256 * 1024;
+        constexpr std::size_t kMostBytes = 262144;
         const std::vector<std::byte> bytes = read_input_file(params_file, kMostBytes);
         params = parse_params_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     }

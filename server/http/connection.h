@@ -12,7 +12,7 @@ namespace leafcutter::server {
 
 struct Patience {
     std::chrono::milliseconds per_step{10000};
-    std::int64_t least_bytes_per_s = 16 * 1024;  // After per_step, over the whole transfer.
+    std::int64_t least_bytes_per_s = 16384;  // After per_step, over the whole transfer.
 };
 
 class Connection {

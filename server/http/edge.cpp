@@ -8,6 +8,7 @@
 #include <mutex>
 #include <semaphore>
 #include <sys/socket.h>
+#include <system_error>
 #include <thread>
 #include <unistd.h>
 #include <utility>
@@ -69,7 +70,7 @@ bool send_file_piece(const FilePart& part,
                      std::size_t offset,
                      std::size_t length,
                      httplib::DataSink& sink) {
-    std::array<char, 64 * 1024> buffer;
+    std::array<char, 65536> buffer;
     const std::size_t wanted = std::min(length, buffer.size());
     const ssize_t size = ::pread(part.file->fd(), buffer.data(), wanted,
                                  static_cast<off_t>(offset) + static_cast<off_t>(part.offset));
@@ -125,7 +126,7 @@ public:
         new_task_queue = [] { return new InlineQueue; };
         set_keep_alive_timeout(options.parking.idle_time.count() / 1000);
         set_pre_routing_handler([this](const httplib::Request&, httplib::Response& out) {
-            answer(*current_, out);
+            answer(*in_hand_, out);
             return HandlerResponse::Handled;
         });
         listen_on();
@@ -194,10 +195,10 @@ private:
             bound = bind_to_port(options_.address, options_.port);
         }
         if (!bound) {
-            throw CannotListen(
-                fmt::format("cannot listen on {}:{}: {}; is another daemon running? "
-                            "name another address with --listen",
-                            options_.address, options_.port, std::strerror(errno)));
+            throw CannotListen(fmt::format(
+                "cannot listen on {}:{}: {}; is another daemon running? "
+                "name another address with --listen",
+                options_.address, options_.port, std::generic_category().message(errno)));
         }
         constexpr int kBacklog = 512;
         ::listen(svr_sock_, kBacklog);
@@ -243,13 +244,13 @@ private:
                               {options_.patience, options_.least_bytes_per_s});
         connection.expect_body(head.request.body.bytes, head.expects_continue);
         Exchange exchange{connection, head, std::nullopt};
-        current_ = &exchange;
+        in_hand_ = &exchange;
         VettedStream stream(
             connection, fmt::format("{} / HTTP/1.1\r\nHost: localhost\r\nConnection: {}\r\n\r\n",
                                     head.request.method, head.keep_alive ? "keep-alive" : "close"));
         bool closed = false;
         const bool written = process_request(stream, !head.keep_alive, closed, nullptr);
-        current_ = nullptr;
+        in_hand_ = nullptr;
         if (exchange.events) {
             hub_.adopt(task.fd, *exchange.events);
         } else if (written && !closed && head.keep_alive && connection.body_left() == 0) {
@@ -329,7 +330,7 @@ private:
         parking_.drain(fd);
     }
 
-    static thread_local Exchange* current_;  // The worker's; the library's handler can't carry it.
+    static thread_local Exchange* in_hand_;  // The worker's; the library's handler can't carry it.
 
     const EdgeOptions options_;
     const RequestHandler handler_;
@@ -347,7 +348,7 @@ private:
     std::jthread acceptor_;
 };
 
-thread_local Edge::Server::Exchange* Edge::Server::current_ = nullptr;
+thread_local Edge::Server::Exchange* Edge::Server::in_hand_ = nullptr;
 
 Edge::Edge(const EdgeOptions& options, RequestHandler handler, EventHub& hub)
     : server_(std::make_unique<Server>(options, std::move(handler), hub)) {}

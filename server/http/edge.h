@@ -35,10 +35,10 @@ struct EdgeOptions {
 
     // Bodies and files above this take one of workers - 2 bulk places, so that two workers are
     // always left for a stop or a hold.
-    std::int64_t bulk_bytes = 256 * 1024;
+    std::int64_t bulk_bytes = 262144;
 
-    std::chrono::milliseconds patience{10000};   // For any single read or write.
-    std::int64_t least_bytes_per_s = 16 * 1024;  // Of a body, after `patience`.
+    std::chrono::milliseconds patience{10000};  // For any single read or write.
+    std::int64_t least_bytes_per_s = 16384;     // Of a body, after `patience`.
 };
 
 using RequestHandler = std::function<Response(Request&)>;

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kHeartbeat = 15s;
 constexpr auto kPassingGap = 100ms;
-constexpr std::size_t kSlack = 64 * 1024;
+constexpr std::size_t kSlack = 65536;
 
 void watch(int epoll, int fd, int how, std::uint32_t events) {
     epoll_event event{};

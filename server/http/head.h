@@ -14,7 +14,7 @@
 namespace leafcutter::server {
 
 struct HeadRules {
-    static constexpr std::size_t kMostBytes = 16 * 1024;
+    static constexpr std::size_t kMostBytes = 16384;
     static constexpr std::size_t kMostHeaders = 64;
     static constexpr std::size_t kLongestPath = 1024;
 

@@ -12,7 +12,7 @@
 
 namespace leafcutter::server {
 
-constexpr std::int64_t kMostJsonBytes = 256 * 1024;
+constexpr std::int64_t kMostJsonBytes = 262144;
 
 // Throws HttpProblem (400).
 nlohmann::json parse_json(std::string_view text);

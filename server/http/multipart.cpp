@@ -73,7 +73,7 @@ MultipartReader::MultipartReader(std::string_view content_type, const RequestBod
     : body_(body), delimiter_("\r\n--" + boundary_in(content_type)), buffer_("\r\n") {}
 
 bool MultipartReader::fill() {
-    std::array<char, 16 * 1024> piece;
+    std::array<char, 16384> piece;
     const std::size_t size = body_.read(piece);
     buffer_.append(piece.data(), size);
     return size > 0;
@@ -88,7 +88,7 @@ void MultipartReader::need(std::size_t bytes) {
 }
 
 std::optional<PartHead> MultipartReader::next() {
-    std::array<char, 16 * 1024> skipped;
+    std::array<char, 16384> skipped;
     while (read(skipped) > 0) {
     }
     buffer_.erase(0, delimiter_.size());

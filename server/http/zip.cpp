@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -98,7 +99,7 @@ private:
             const ssize_t written = ::write(out_.fd(), bytes.data(), bytes.size());
             if (written < 0 && errno != EINTR) {
                 throw BlobWriteFailed(std::string("cannot write an archive: ") +
-                                      std::strerror(errno));
+                                      std::generic_category().message(errno));
             }
             bytes.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
         }

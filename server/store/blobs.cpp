@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void fail(const char* what, const fs::path& path) {
-    throw BlobWriteFailed(fmt::format("{} {}: {}", what, path.string(), std::strerror(errno)));
+    throw BlobWriteFailed(
+        fmt::format("{} {}: {}", what, path.string(), std::generic_category().message(errno)));
 }
 
 void sync_folder(const fs::path& folder) {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <sys/file.h>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -20,7 +21,7 @@ StateDir::StateDir(std::filesystem::path path) : path_(std::move(path)) {
     lock_fd_ = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (lock_fd_ < 0) {
         throw StateDirUnusable(fmt::format("state folder {}: {}; name a writable one with --state",
-                                           path_.string(), std::strerror(errno)));
+                                           path_.string(), std::generic_category().message(errno)));
     }
     if (::flock(lock_fd_, LOCK_EX | LOCK_NB) != 0) {
         ::close(lock_fd_);

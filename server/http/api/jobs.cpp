@@ -32,7 +32,7 @@ void check_room(App& app, std::int64_t bytes) {
 // Streams the current part into the blob store.
 SourceFile store_mesh(App& app, MultipartReader& parts, const PartHead& head) {
     const std::unique_ptr<BlobWriter> writer = app.store().blobs.begin();
-    std::array<char, 64 * 1024> piece;
+    std::array<char, 65536> piece;
     while (const std::size_t size = parts.read(piece)) {
         writer->write({piece.data(), size});
     }
@@ -200,7 +200,7 @@ Response put_blob(App& app, Request& request) {
         throw HttpProblem(422, "bad-digest", "the name must be a SHA-256 in lower-case hex");
     }
     Response response;
-    std::array<char, 64 * 1024> piece;
+    std::array<char, 65536> piece;
     if (app.store().blobs.size(wanted)) {
         while (request.body.read(piece) > 0) {  // Known already; the bytes have to go somewhere.
         }
