@@ -77,7 +77,8 @@ void ObjectReader::choice(std::string_view key,
     if (value == nullptr) {
         return;
     }
-    const std::string name = read_text(*value, path_of(key));
+    // A name that looks like a number ("0") arrives as one from --set.
+    const std::string name = value->is_number() ? value->dump() : read_text(*value, path_of(key));
     std::string known;
     for (const Choice<Value>& choice : choices) {
         if (choice.name == name) {

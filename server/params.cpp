@@ -197,9 +197,6 @@ geometry::RowsCols read_rows_cols(ObjectReader& reader) {
 }
 
 void refuse_later_grids(const ObjectReader& reader, const geometry::GridOptions& grid) {
-    if (grid.spacing != geometry::Spacing::Uniform) {
-        refuse_unsupported(reader.path_of("spacing"), name_of(kSpacings, grid.spacing));
-    }
     if (grid.planar != geometry::Planarity::Off) {
         refuse_unsupported(reader.path_of("planar"), name_of(kPlanarities, grid.planar));
     }
