@@ -23,6 +23,7 @@ bool is_closed(const CutPath& path) {
 // How many closed paths enclose each path. Paths of one sheet don't cross, so one point tells.
 std::vector<int> depths(const std::vector<CutPath>& paths) {
     std::vector<Box> boxes;
+    boxes.reserve(paths.size());
     for (const CutPath& path : paths) {
         boxes.push_back(bounds(path.points));
     }

@@ -43,8 +43,8 @@ Band crimped(const Unfolded& flat, double thickness_mm) {
 
 // How far an end of rung i moves along the rung for its side to move by `clearance_mm`.
 double along_rung(const Polyline& side, std::size_t i, const Vector2d& rung, double clearance_mm) {
-    const Vector2d before = side[i > 0 ? i - 1 : i];
-    const Vector2d after = side[i + 1 < side.size() ? i + 1 : i];
+    const Vector2d& before = side[i > 0 ? i - 1 : i];
+    const Vector2d& after = side[i + 1 < side.size() ? i + 1 : i];
     const Vector2d tangent = (after - before).stableNormalized();
     const double sine = std::abs(tangent.x() * rung.y() - tangent.y() * rung.x());
     return clearance_mm / std::max(sine, 0.5);

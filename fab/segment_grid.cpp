@@ -27,7 +27,7 @@ SegmentGrid::SegmentGrid(std::span<const Segment> segments)
             for (int x = column(from.x()); x <= column(to.x()); ++x) {
                 const Eigen::Vector2d middle = low_ + cell_mm_ * Eigen::Vector2d(x + 0.5, y + 0.5);
                 if (squared_distance(middle, segment) <= 0.5001 * cell_mm_ * cell_mm_) {
-                    cells_[static_cast<std::size_t>(y * columns_ + x)].push_back(i);
+                    cells_[cell_at(x, y)].push_back(i);
                 }
             }
         }
@@ -46,7 +46,7 @@ int SegmentGrid::row(double y) const {
 
 double SegmentGrid::least_square_in(int x, int y, const Eigen::Vector2d& point) const {
     double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t i : cells_[static_cast<std::size_t>(y * columns_ + x)]) {
+    for (const std::size_t i : cells_[cell_at(x, y)]) {
         least = std::min(least, squared_distance(point, segments_[i]));
     }
     return least;

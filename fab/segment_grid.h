@@ -20,6 +20,10 @@ public:
     double distance(const Eigen::Vector2d& point) const;
 
 private:
+    std::size_t cell_at(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+               static_cast<std::size_t>(x);
+    }
     double least_square_in(int x, int y, const Eigen::Vector2d& point) const;
     int column(double x) const;
     int row(double y) const;

@@ -38,7 +38,7 @@ struct Best {
 
 Eigen::Vector2d usable_extent(const SheetSize& size, const NestOptions& options) {
     const double edge = 2.0 * options.margin_mm + options.kerf_mm;
-    const Eigen::Vector2d extent(size.width_mm - edge, size.height_mm - edge);
+    Eigen::Vector2d extent(size.width_mm - edge, size.height_mm - edge);
     if (!(extent.minCoeff() > 0.0)) {
         throw geometry::Error(
             geometry::ErrorKind::BadOption, "sheet-too-small",
@@ -67,6 +67,7 @@ void check_options(const NestOptions& options) {
 // The search raster resolves the narrow bands among the shapes.
 double raster_cell_mm(const std::vector<NestShape>& shapes, const Eigen::Vector2d& extent) {
     std::vector<double> widths;
+    widths.reserve(shapes.size());
     for (const NestShape& shape : shapes) {
         widths.push_back(shape.width_mm);
     }

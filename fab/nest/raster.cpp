@@ -96,12 +96,12 @@ SheetRaster::SheetRaster(const Eigen::Vector2d& extent, double cell_mm)
       stride_(static_cast<std::size_t>(columns_ / kWordBits) + 3),
       bits_(stride_ * static_cast<std::size_t>(rows_), 0) {}
 
-void SheetRaster::block_span(int row, double from, double to) {
+void SheetRaster::block_span(int row, const Span& x_mm) {
     if (row < 0 || row >= rows_) {
         return;
     }
-    const int first = std::max(0, static_cast<int>(std::ceil(from / cell_mm_)));
-    const int last = std::min(columns_ - 1, static_cast<int>(std::floor(to / cell_mm_)));
+    const int first = std::max(0, static_cast<int>(std::ceil(x_mm.from / cell_mm_)));
+    const int last = std::min(columns_ - 1, static_cast<int>(std::floor(x_mm.to / cell_mm_)));
     if (first > last) {
         return;
     }
@@ -145,7 +145,7 @@ void SheetRaster::block_capsule(const Eigen::Vector2d& a,
             to = std::max(to, x);
         }
         if (from <= to) {
-            block_span(row, from, to);
+            block_span(row, {from, to});
         }
     }
 }
@@ -156,7 +156,7 @@ void SheetRaster::block_inside(const Ring& ring) {
     for (int row = std::max(0, static_cast<int>(box.low.y() / cell_mm_)); row <= last; ++row) {
         const std::vector<double> xs = crossings(ring, row * cell_mm_);
         for (std::size_t i = 0; i + 1 < xs.size(); i += 2) {
-            block_span(row, xs[i], xs[i + 1]);
+            block_span(row, {xs[i], xs[i + 1]});
         }
     }
 }

@@ -48,7 +48,12 @@ public:
                         std::vector<std::uint64_t>& blocked) const;
 
 private:
-    void block_span(int row, double from, double to);
+    struct Span {
+        double from = 0.0;
+        double to = 0.0;
+    };
+
+    void block_span(int row, const Span& x_mm);
     void block_capsule(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double reach_mm);
     void block_inside(const Ring& ring);
 

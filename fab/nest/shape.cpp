@@ -85,7 +85,7 @@ Eigen::Vector2d centroid_of(const Ring& ring, double area) {
         return ring.front();
     }
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    const Eigen::Vector2d base = ring.front();
+    const Eigen::Vector2d& base = ring.front();
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const Eigen::Vector2d a = ring[i] - base;
         const Eigen::Vector2d b = ring[(i + 1) % ring.size()] - base;
