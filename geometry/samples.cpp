@@ -236,18 +236,18 @@ TriangleMesh make_double_torus(int faces) {
 
 // Open at the wrist, fingers up.
 TriangleMesh make_hand(int faces) {
-    static const std::array<Limb, 8> kLimbs{{{{0, 0, -0.5}, {0, 0, 0.3}, 0.26, 0.26},
-                                             {{-0.12, 0, 0.35}, {-0.16, 0, 0.85}, 0.22, 0.18},
-                                             {{0.12, 0, 0.35}, {0.16, 0, 0.85}, 0.22, 0.18},
-                                             {{-0.28, 0, 0.9}, {-0.42, 0, 1.48}, 0.095, 0.075},
-                                             {{-0.09, 0, 0.95}, {-0.13, 0.02, 1.68}, 0.1, 0.08},
-                                             {{0.1, 0, 0.95}, {0.14, 0.02, 1.62}, 0.1, 0.08},
-                                             {{0.27, 0, 0.9}, {0.42, 0, 1.42}, 0.09, 0.07},
-                                             {{0.2, 0.05, 0.4}, {0.66, 0.14, 0.88}, 0.13, 0.085}}};
+    static const std::array<Limb, 8> limbs{{{{0, 0, -0.5}, {0, 0, 0.3}, 0.26, 0.26},
+                                            {{-0.12, 0, 0.35}, {-0.16, 0, 0.85}, 0.22, 0.18},
+                                            {{0.12, 0, 0.35}, {0.16, 0, 0.85}, 0.22, 0.18},
+                                            {{-0.28, 0, 0.9}, {-0.42, 0, 1.48}, 0.095, 0.075},
+                                            {{-0.09, 0, 0.95}, {-0.13, 0.02, 1.68}, 0.1, 0.08},
+                                            {{0.1, 0, 0.95}, {0.14, 0.02, 1.62}, 0.1, 0.08},
+                                            {{0.27, 0, 0.9}, {0.42, 0, 1.42}, 0.09, 0.07},
+                                            {{0.2, 0.05, 0.4}, {0.66, 0.14, 0.88}, 0.13, 0.085}}};
     const auto value = [](const Eigen::Vector3d& p) {
         constexpr double kBlend = 0.09;
-        double distance = limb_distance(p, kLimbs[0]);
-        for (const Limb& limb : kLimbs) {
+        double distance = limb_distance(p, limbs[0]);
+        for (const Limb& limb : limbs) {
             distance = smooth_min(distance, limb_distance(p, limb), kBlend);
         }
         return distance;

@@ -6,14 +6,18 @@
 #include <stdexcept>
 #include <string>
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
 }
 
 namespace leafcutter::server {
 
 // Exit statuses of the binary.
-enum ExitStatus : int { kDone = 0, kFailed = 1, kRefused = 2, kDeviceFailed = 3 };
+using ExitStatus = int;
+inline constexpr ExitStatus kDone = 0;
+inline constexpr ExitStatus kFailed = 1;
+inline constexpr ExitStatus kRefused = 2;
+inline constexpr ExitStatus kDeviceFailed = 3;
 
 // Options that every command shares.
 struct CommonOptions {

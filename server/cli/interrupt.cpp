@@ -28,7 +28,7 @@ extern "C" void write_to_pipe(int /*number*/) {
 
 // A stop request runs callbacks and wakes waiters, which no handler may do: done by a thread of its
 // own.
-void forward(int pipe, std::stop_source source) {
+void forward(int pipe, const std::stop_source& source) {
     // Reads on after a signal: the end is written to a pipe that must still have its reader.
     char what = 0;
     while (what != kEnd) {
