@@ -44,7 +44,7 @@ json answer_of(const httplib::Result& result, const std::string& url) {
         throw std::runtime_error(fmt::format("{}: no answer ({}): is the daemon running?", url,
                                              httplib::to_string(result.error())));
     }
-    const json body = json::parse(result->body, nullptr, /*allow_exceptions=*/false);
+    json body = json::parse(result->body, nullptr, /*allow_exceptions=*/false);
     if (result->status < 300) {
         return body;
     }
