@@ -9,7 +9,7 @@
 
 #include "server/store/records.h"
 
-namespace SQLite {
+namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
 class Database;
 }
 

@@ -12,7 +12,7 @@
 
 #include "server/store/records.h"
 
-namespace SQLite {
+namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
 class Database;
 }
 

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace SQLite {
+namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
 class Database;
 }
 
