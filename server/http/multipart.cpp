@@ -13,7 +13,7 @@ namespace leafcutter::server {
 namespace {
 
 HttpProblem malformed(const std::string& what) {
-    return {400, "bad-multipart", "the multipart body: " + what};
+    return {400, "bad-multipart", fmt::format("the multipart body: {}", what)};
 }
 
 std::string boundary_in(std::string_view content_type) {
@@ -55,7 +55,8 @@ std::optional<std::string> parameter(std::string_view line, std::string_view nam
         throw malformed("a quote is not closed");
     }
     for (std::size_t quote = 0; (quote = value.find("%22", quote)) != std::string::npos; ++quote) {
-        value.replace(quote, 3, "\"");
+        value.erase(quote, 2);
+        value[quote] = '"';
     }
     return value;
 }
@@ -70,7 +71,9 @@ bool names_header(std::string_view line, std::string_view lower_name) {
 }  // namespace
 
 MultipartReader::MultipartReader(std::string_view content_type, const RequestBody& body)
-    : body_(body), delimiter_("\r\n--" + boundary_in(content_type)), buffer_("\r\n") {}
+    : body_(body),
+      delimiter_(fmt::format("\r\n--{}", boundary_in(content_type))),
+      buffer_("\r\n") {}
 
 bool MultipartReader::fill() {
     std::array<char, 16384> piece;

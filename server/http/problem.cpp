@@ -51,7 +51,7 @@ std::string_view title_of(int status) {
     }
 }
 
-// Messages of refused parameters begin with their full path: "grid.strip_width_mm: must be > 0".
+// The field's path at the head of a message, as a JSON pointer; empty if there is none.
 std::string pointer_in(const std::string& message) {
     const std::size_t colon = message.find(':');
     if (colon == std::string::npos || message.find(' ') < colon) {
@@ -66,15 +66,6 @@ std::string pointer_in(const std::string& message) {
     return pointer;
 }
 
-HttpProblem problem_of(const geometry::Error& error) {
-    HttpProblem problem(422, error.code(), error.what());
-    const std::string pointer = pointer_in(error.what());
-    if (!pointer.empty()) {
-        problem.errors.push_back({pointer, error.what()});
-    }
-    return problem;
-}
-
 }  // namespace
 
 Response problem_response(const HttpProblem& problem) {
@@ -84,15 +75,18 @@ Response problem_response(const HttpProblem& problem) {
         {"status", problem.status},
         {"detail", problem.what()},
         {"code", problem.code}};
-    for (const FieldError& error : problem.errors) {
-        body["errors"].push_back({{"pointer", error.pointer}, {"detail", error.detail}});
+    const std::string pointer = problem.status == 422 ? pointer_in(problem.what()) : std::string();
+    if (!pointer.empty()) {
+        body["errors"].push_back({{"pointer", pointer}, {"detail", problem.what()}});
     }
     Response response;
     response.status = problem.status;
+    response.headers = problem.headers;
     response.content_type = "application/problem+json";
     response.body = dump_json(body);
     if (problem.status == 503) {
-        response.headers["Retry-After"] = "1";
+        constexpr int kSoonS = 1;
+        response.headers["Retry-After"] = std::to_string(kSoonS);
     }
     return response;
 }
@@ -102,7 +96,7 @@ Response response_to(const std::exception& error) {
         return problem_response(*problem);
     }
     if (const auto* refused = dynamic_cast<const geometry::Error*>(&error)) {
-        return problem_response(problem_of(*refused));
+        return problem_response({422, refused->code(), refused->what()});
     }
     if (dynamic_cast<const drivers::Refused*>(&error) != nullptr) {
         return problem_response({409, "refused", error.what()});

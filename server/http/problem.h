@@ -4,20 +4,16 @@
 #pragma once
 
 #include <exception>
+#include <map>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "server/http/response.h"
 
 namespace leafcutter::server {
 
-struct FieldError {
-    std::string pointer;  // JSON pointer into the body: "/grid/strip_width_mm".
-    std::string detail;
-};
-
-// Thrown by handlers; `what()` is the detail.
+// Thrown by handlers; `what()` is the detail. That of a refused field (422) begins with the field's
+// path, "grid.strip_width_mm: must be > 0", which clients get as a JSON pointer too.
 class HttpProblem : public std::runtime_error {
 public:
     HttpProblem(int http_status, std::string stable_code, const std::string& detail)
@@ -25,7 +21,7 @@ public:
 
     int status;
     std::string code;  // For programs.
-    std::vector<FieldError> errors;
+    std::map<std::string, std::string> headers;
 };
 
 Response problem_response(const HttpProblem& problem);

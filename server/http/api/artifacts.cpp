@@ -52,7 +52,9 @@ std::optional<ByteRange> range_in(const Request& request, std::int64_t size) {
         return std::nullopt;
     }
     if (range.first > range.last) {
-        throw HttpProblem(416, "bad-range", fmt::format("the file has {} bytes", size));
+        HttpProblem problem(416, "bad-range", fmt::format("the file has {} bytes", size));
+        problem.headers["Content-Range"] = fmt::format("bytes */{}", size);
+        throw problem;
     }
     return range;
 }
@@ -97,7 +99,8 @@ Response show_artifact(App& app, Request& request) {
     response.headers["ETag"] = fmt::format("\"{}\"", artifact->sha256);
     response.headers["Accept-Ranges"] = "bytes";
     response.headers["Cache-Control"] = "private, no-cache";
-    if (request.header("if-none-match").value_or("").find(artifact->sha256) != std::string::npos) {
+    const std::string seen = request.header("if-none-match").value_or("");
+    if (seen == "*" || seen.find(artifact->sha256) != std::string::npos) {
         response.status = 304;
         return response;
     }

@@ -26,10 +26,14 @@ std::vector<int> sheets_in(const json& body) {
     if (found == body.end() || found->is_null()) {
         return {};
     }
+    const HttpProblem no_list(422, "bad-field", "sheets: must be a list of sheet numbers");
+    if (!found->is_array()) {
+        throw no_list;
+    }
     std::vector<int> sheets;
     for (const json& sheet : *found) {
         if (!sheet.is_number_integer() || sheet < 1 || sheet > 1000000) {
-            throw HttpProblem(422, "bad-field", "sheets: must be a list of sheet numbers");
+            throw no_list;
         }
         sheets.push_back(sheet.get<int>());
     }
@@ -59,7 +63,8 @@ Response arm(App& app, const Request& request, CutState from, const std::string&
         throw not_now(cut, action);
     }
     check_consent(body, cut);
-    if (!cut_allows(app, cut, action)) {
+    const auto runner = app.fleet().find(cut.device);
+    if (!runner || !cut_allows(app, cut, action)) {
         throw HttpProblem(409, "device-not-ready",
                           "the machine is not idle, or another cut has it");
     }
@@ -67,7 +72,7 @@ Response arm(App& app, const Request& request, CutState from, const std::string&
         throw HttpProblem(409, "not-now",
                           "something else happened to the cut or its machine just now");
     }
-    app.fleet().find(cut.device)->wake();
+    runner->wake();
     return json_response(cut_json(app, find_cut(app, request)), 202);
 }
 
@@ -148,6 +153,9 @@ Response abort_cut(App& app, Request& request) {
             throw not_now(cut, "abort");
         }
         if (app.store().cuts.move(cut.id, cut.state, CutState::Aborted, "aborted by an operator")) {
+            if (runner) {
+                runner->wake();  // The machine is free for the next one.
+            }
             return json_response(cut_json(app, find_cut(app, request)), 202);
         }
     }

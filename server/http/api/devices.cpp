@@ -31,9 +31,7 @@ std::shared_ptr<DeviceRunner> find_device(App& app, const Request& request) {
 }
 
 HttpProblem bad_field(const std::string& field, const std::string& what) {
-    HttpProblem problem(422, "bad-field", field + ": " + what);
-    problem.errors.push_back({"/" + field, what});
-    return problem;
+    return {422, "bad-field", fmt::format("{}: {}", field, what)};
 }
 
 double number_at(const json& body, const char* key, double otherwise) {
