@@ -93,6 +93,16 @@ void tell(SQLite::Database& database, const CutRecord& cut, std::string note) {
     append_event(database, event);
 }
 
+// A job's view has its cuts, and what it allows depends on whether they are over.
+void tell_job(SQLite::Database& database, const CutRecord& cut, std::string note) {
+    EventRecord event;
+    event.type = "job";
+    event.subject = cut.job;
+    event.job = cut.job;
+    event.note = std::move(note);
+    append_event(database, event);
+}
+
 // The one place where a cut changes its state.
 bool move_cut(SQLite::Database& database,
               const CutRecord& cut,
@@ -114,6 +124,9 @@ bool move_cut(SQLite::Database& database,
         return false;
     }
     tell(database, cut, fmt::format("{} -> {}", to_string(cut.state), to_string(to)));
+    if (is_final(to)) {
+        tell_job(database, cut, fmt::format("cut {}", to_string(to)));
+    }
     return true;
 }
 
@@ -175,12 +188,7 @@ void count_sheet_as_cut(SQLite::Database& database, const CutRecord& cut) {
     mark.exec();
     if (!sheets_of(database, cut.job, Which::Uncut).empty() ||
         !move_job(database, cut.job, JobState::Ready, JobState::Done)) {
-        EventRecord event;
-        event.type = "job";
-        event.subject = cut.job;
-        event.job = cut.job;
-        event.note = fmt::format("sheet {} cut", cut.sheet());
-        append_event(database, event);
+        tell_job(database, cut, fmt::format("sheet {} cut", cut.sheet()));
     }
 }
 
@@ -206,6 +214,7 @@ CutRecord CutStore::add(const std::string& job,
         insert.bind(6, now);
         insert.exec();
         tell(database, cut, "waiting");
+        tell_job(database, cut, "cut waiting");
         cut = find_cut(database, cut.id).value();
     });
     return cut;
