@@ -36,11 +36,17 @@ std::optional<CutProgress> DeviceRunner::live_progress(const std::string& cut) c
 }
 
 bool DeviceRunner::is_ready() const {
-    return !current_cut() && status().state == MachineState::Idle;
+    {
+        const std::scoped_lock lock(mutex_);
+        if (current_ || frame_program_ || framing_) {
+            return false;
+        }
+    }
+    return status().state == MachineState::Idle;
 }
 
 void DeviceRunner::wake() {
-    look_at_queue_ = true;
+    look_at_queue_ = queue_changed_ = true;
 }
 
 bool DeviceRunner::pause(const std::string& cut) {
@@ -113,8 +119,9 @@ void DeviceRunner::jog(const drivers::Jog& jog) {
 }
 
 void DeviceRunner::console(const std::string& line) {
+    const std::shared_ptr<drivers::Device> machine = device_for_hand_work();
     keep_line("> " + line);
-    device_for_hand_work()->console(line);
+    machine->console(line);
 }
 
 void DeviceRunner::frame() {

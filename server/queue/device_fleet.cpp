@@ -45,6 +45,7 @@ void DeviceFleet::check_idle(const std::string& id) const {
 }
 
 void DeviceFleet::put(const DeviceRecord& device) {
+    const std::scoped_lock one_at_a_time(changing_);
     check_idle(device.id);
     store_.devices.put(device);
     std::shared_ptr<DeviceRunner> old;
@@ -59,6 +60,7 @@ void DeviceFleet::put(const DeviceRecord& device) {
 }
 
 void DeviceFleet::remove(const std::string& id) {
+    const std::scoped_lock one_at_a_time(changing_);
     check_idle(id);
     store_.devices.remove(id);
     std::shared_ptr<DeviceRunner> old;

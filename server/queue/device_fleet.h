@@ -34,6 +34,7 @@ private:
 
     Store& store_;
     const DeviceHooks hooks_;
+    std::mutex changing_;       // One put or remove at a time: each waits for a runner's end.
     mutable std::mutex mutex_;  // Guards runners_.
     std::map<std::string, std::shared_ptr<DeviceRunner>> runners_;
 };

@@ -32,6 +32,10 @@ std::string how_far(const CutRecord& cut, const drivers::JobProgress& progress) 
         cut.sheet(), progress.lines_acknowledged, progress.lines_total, progress.lines_sent);
 }
 
+CutState before_arming(const CutRecord& cut) {
+    return cut.position > 0 ? CutState::AwaitingSheet : CutState::Waiting;
+}
+
 // Everything a client sees of a status; equal text, nothing to tell.
 std::string fingerprint(const drivers::DeviceStatus& status) {
     return fmt::format("{} {} {} {} {} {} {} {} {}", drivers::to_string(status.state),
@@ -65,7 +69,9 @@ DeviceRunner::~DeviceRunner() {
 void DeviceRunner::loop(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         try {
-            if (device()) {
+            if (lost_) {
+                settle_lost(stop);
+            } else if (device()) {
                 step();
             } else {
                 connect(stop);
@@ -76,6 +82,7 @@ void DeviceRunner::loop(const std::stop_token& stop) {
         } catch (const std::exception& error) {  // The store failed; the machine goes on.
             spdlog::error("device {}: {}", record_.id, error.what());
             next_store_try_ = next_queue_look_ = Clock::now() + 1s;
+            look_at_queue_ = queue_changed_ = true;
         }
     }
     try {
@@ -95,8 +102,10 @@ void DeviceRunner::connect(const std::stop_token& stop) {
         }
     }
     try {
+        disarm();
         std::shared_ptr<drivers::Device> opened = hooks_.open(record_.uri);
         opened->on_line = [this](std::string_view line) { keep_line(line); };
+        disarm();
         say("");
         spdlog::info("device {}: opened {}", record_.id, record_.uri);
         const std::scoped_lock lock(mutex_);
@@ -108,6 +117,16 @@ void DeviceRunner::connect(const std::stop_token& stop) {
         say(error.what());
         std::unique_lock lock(mutex_);
         nudged_.wait_for(lock, stop, kPause, [] { return false; });
+    }
+}
+
+// An armed cut must not fire when its machine comes back, with hands in the bed.
+void DeviceRunner::disarm() {
+    for (const CutRecord& cut : store_.cuts.open_on(record_.id)) {
+        if (cut.state == CutState::Armed) {
+            store_.cuts.move(cut.id, CutState::Armed, before_arming(cut),
+                             "the machine was not connected");
+        }
     }
 }
 
@@ -126,8 +145,17 @@ void DeviceRunner::lose_link(const std::string& why) {
     if (was_cutting) {
         last.outcome = JobOutcome::LinkLost;
         last.reason = why;
-        settle(last);
+        lost_ = last;
     }
+}
+
+void DeviceRunner::settle_lost(const std::stop_token& stop) {
+    {
+        std::unique_lock lock(mutex_);
+        nudged_.wait_until(lock, stop, next_store_try_, [] { return false; });
+    }
+    settle(*lost_);
+    lost_.reset();
 }
 
 void DeviceRunner::step() {
@@ -188,7 +216,7 @@ void DeviceRunner::settle(const drivers::JobProgress& progress) {
         current_.reset();
         abort_wanted_ = false;
     }
-    look_at_queue_ = true;
+    look_at_queue_ = queue_changed_ = true;
     hooks_.on_cut(cut.id);
 }
 
@@ -216,14 +244,10 @@ void DeviceRunner::take_up_next() {
     {
         const std::scoped_lock lock(mutex_);
         frame = std::exchange(frame_program_, std::nullopt);
+        framing_ = frame.has_value();
     }
     if (frame) {
-        try {
-            device()->start(*frame);
-            framing_ = true;
-        } catch (const drivers::Refused& error) {
-            keep_line(error.what());
-        }
+        start_frame(*frame);
         return;
     }
     constexpr auto kLookEvery = 2s;  // Besides every wake().
@@ -241,10 +265,22 @@ void DeviceRunner::take_up_next() {
     if (armed != open.end()) {
         take_up(*armed);
     } else if (record_.auto_start && !open.empty() && is_ready()) {
-        // The configuration speaks for the operator here.
-        if (store_.cuts.arm(open.front())) {
+        // The configuration speaks for the operator here; a cut between two sheets goes on first.
+        const auto begun = std::find_if(open.begin(), open.end(), [](const CutRecord& cut) {
+            return occupies_device(cut.state);
+        });
+        if (store_.cuts.arm(begun != open.end() ? *begun : open.front())) {
             look_at_queue_ = true;
         }
+    }
+}
+
+void DeviceRunner::start_frame(const std::string& program) {
+    try {
+        device()->start(program);
+    } catch (const drivers::Refused& error) {
+        framing_ = false;
+        keep_line(error.what());
     }
 }
 
@@ -252,9 +288,8 @@ void DeviceRunner::take_up(const CutRecord& cut) {
     const drivers::DeviceStatus now = device()->status();
     if (now.state != MachineState::Idle) {
         // An armed cut must not fire later, when someone clears an alarm with hands in the bed.
-        const CutState back = cut.position > 0 ? CutState::AwaitingSheet : CutState::Waiting;
         store_.cuts.move(
-            cut.id, CutState::Armed, back,
+            cut.id, CutState::Armed, before_arming(cut),
             fmt::format("the machine is not idle but {}", drivers::to_string(now.state)));
         return;
     }
@@ -318,19 +353,24 @@ void DeviceRunner::publish() {
         return;
     }
     const std::optional<std::string> cut = current_cut();
-    const std::string seen = fmt::format("{} {} {} {}", fingerprint(status()), is_ready(),
-                                         cut.value_or(""), progress_.lines_acknowledged);
-    if (seen == published_) {
+    const std::string freedom = fmt::format("{} {}", is_ready(), cut.value_or(""));
+    const std::string seen =
+        fmt::format("{} {} {}", fingerprint(status()), freedom, progress_.lines_acknowledged);
+    const bool queue_changed = queue_changed_.exchange(false);
+    if (seen == published_ && !queue_changed) {
         return;
     }
     published_ = seen;
     next_publish_ = now + kShortestGap;
     hooks_.on_device(record_.id);
-    if (cut) {
-        hooks_.on_cut(*cut);
+    if (freedom == published_freedom_ && !queue_changed) {
+        if (cut) {
+            hooks_.on_cut(*cut);
+        }
         return;
     }
-    // Whether a cut may start depends on this machine's state.
+    // Whether a cut may start depends on this machine and on the other cuts in its queue.
+    published_freedom_ = freedom;
     for (const CutRecord& open : store_.cuts.open_on(record_.id)) {
         hooks_.on_cut(open.id);
     }
@@ -338,6 +378,9 @@ void DeviceRunner::publish() {
 
 void DeviceRunner::wind_down() {
     const std::shared_ptr<drivers::Device> machine = device();
+    if (lost_) {
+        settle(*lost_);
+    }
     if (!machine || !current_cut()) {
         return;
     }

@@ -81,6 +81,8 @@ private:
     void loop(const std::stop_token& stop);
     void connect(const std::stop_token& stop);
     void lose_link(const std::string& why);
+    void settle_lost(const std::stop_token& stop);
+    void disarm();
     void step();
     void follow_cut();
     void settle(const drivers::JobProgress& progress);
@@ -88,6 +90,7 @@ private:
     void take_up_next();
     void take_up(const CutRecord& cut);
     void fire(const CutRecord& cut);
+    void start_frame(const std::string& program);
     void publish();
     void wind_down();
 
@@ -100,6 +103,8 @@ private:
     Store& store_;
     const DeviceHooks hooks_;
     std::atomic<bool> look_at_queue_{true};
+    std::atomic<bool> queue_changed_{false};  // What its cuts allow may have changed with it.
+    std::atomic<bool> framing_{false};
 
     mutable std::mutex mutex_;  // Guards the members up to the next blank line.
     std::condition_variable_any nudged_;
@@ -114,12 +119,13 @@ private:
     std::deque<std::string> lines_;
 
     // Of the runner's thread alone.
-    bool framing_ = false;
+    std::optional<drivers::JobProgress> lost_;  // Of the cut whose link is gone, not yet on disk.
     Clock::time_point next_record_{};
     Clock::time_point next_store_try_{};
     Clock::time_point next_publish_{};
     Clock::time_point next_queue_look_{};
     std::string published_;
+    std::string published_freedom_;
 
     std::jthread thread_;  // Last: it uses everything above.
 };
