@@ -79,6 +79,7 @@ void DeviceFleet::stop_all() {
         runners.swap(runners_);
     }
     std::vector<std::jthread> stopping;  // Side by side: each may take seconds to stand still.
+    stopping.reserve(runners.size());
     for (auto& [id, runner] : runners) {
         stopping.emplace_back([&runner = runner] { runner.reset(); });
     }

@@ -294,6 +294,7 @@ class Cuts(CutsOf):
         first, second = self.put_cut(machine, sheets=[1, 2]), self.put_cut(machine, sheets=[2])
         self.fire(first)
         self.reaches(first, "awaiting-sheet")
+        machine.stands_dark()  # Nothing is left to be told.
         with self.daemon.events() as events:
             self.ask("POST", first + "/abort")
             told = events.until(lambda kind, data: kind == "cut" and data["cut"]["id"] in second

@@ -84,6 +84,15 @@ class Events:
                     return data
         return None
 
+    def ended(self):
+        """The daemon closes the stream; a timeout is an error."""
+        try:
+            while self.stream.readline():
+                pass
+        except (http.client.HTTPException, ConnectionError):
+            return True
+        return True
+
     def __enter__(self):
         return self
 
@@ -91,9 +100,12 @@ class Events:
         self.connection.close()
 
 
-def form(key, name):
+def form(key, name, params=None):
     boundary = "b" + key
-    body = (f"--{boundary}\r\nContent-Disposition: form-data; name=\"name\"\r\n\r\n{name}\r\n"
-            f"--{boundary}\r\nContent-Disposition: form-data; name=\"mesh\"; filename=\"s.off\"\r\n\r\n"
-            ).encode() + SQUARE + f"\r\n--{boundary}--\r\n".encode()
+    fields = f"--{boundary}\r\nContent-Disposition: form-data; name=\"name\"\r\n\r\n{name}\r\n"
+    if params is not None:
+        fields += (f"--{boundary}\r\nContent-Disposition: form-data; name=\"params\"\r\n\r\n"
+                   f"{json.dumps(params)}\r\n")
+    fields += f"--{boundary}\r\nContent-Disposition: form-data; name=\"mesh\"; filename=\"s.off\"\r\n\r\n"
+    body = fields.encode() + SQUARE + f"\r\n--{boundary}--\r\n".encode()
     return body, {"Content-Type": f"multipart/form-data; boundary={boundary}", "Idempotency-Key": key}

@@ -101,6 +101,33 @@ class CutShort(unittest.TestCase):
                     daemon.stop()
 
 
+class Stopped(unittest.TestCase):
+    def test_a_stop_ends_every_stream_and_puts_running_jobs_back_in_the_queue(self):
+        with tempfile.TemporaryDirectory() as folder:
+            daemon = Daemon(folder, free_port())
+            body, headers = form("long", "long", {"nesting": {"time_s": 120}})
+            path = "/api/v1/jobs/" + json.loads(daemon.call("POST", "/api/v1/jobs", body, headers)[1])["id"]
+            with daemon.events() as events:
+                self.await_state(daemon, path, "computing")
+                begin = time.monotonic()
+                self.assertEqual(daemon.stop(), 0)
+                self.assertLess(time.monotonic() - begin, 5)
+                self.assertTrue(events.ended())
+            daemon = Daemon(folder, free_port())
+            try:
+                self.await_state(daemon, path, "computing")
+                self.assertEqual(daemon.call("DELETE", path)[0], 200)
+                self.await_state(daemon, path, "cancelled")
+            finally:
+                self.assertEqual(daemon.stop(), 0)
+
+    def await_state(self, daemon, path, state):
+        deadline = time.monotonic() + 10
+        while json.loads(daemon.call("GET", path)[1])["state"] != state:
+            self.assertLess(time.monotonic(), deadline, state)
+            time.sleep(0.02)
+
+
 class Twice(unittest.TestCase):
     def refused(self, state, port):
         begin = time.monotonic()
