@@ -116,8 +116,12 @@ void ComputeRunner::loop(const std::stop_token& stop) {
         try {
             while (!stop.stop_requested() && compute_next(stop)) {
             }
-        } catch (const std::exception& error) {  // The store failed; the next wake tries again.
+        } catch (const std::exception& error) {  // The store failed; the jobs are still there.
             spdlog::error("compute worker: {}", error.what());
+            constexpr std::chrono::seconds kPause{1};
+            std::unique_lock lock(mutex_);
+            arrived_.wait_for(lock, stop, kPause, [] { return false; });
+            --seen;
         }
     }
 }
