@@ -186,8 +186,11 @@ class Cuts(CutsOf):
         self.reaches(path, "paused")
         self.assertEqual(machine.command("resume")[0], 202)
         self.reaches(path, "cutting")
-        self.ask("POST", path + "/abort")
+        self.assertEqual(self.ask("POST", path + "/pause")[0], 202)
+        self.reaches(path, "paused")
+        self.assertEqual(self.ask("POST", path + "/abort")[0], 202)
         self.reaches(path, "aborted")
+        machine.until("idle")
 
     def test_an_aborted_cut_burns_nothing_more(self):
         machine = Machine(self, "abort", 3)
@@ -347,9 +350,9 @@ class Machines(CutsOf):
         self.assertNotIn("start", self.get(path)["actions"])
         machine.until("idle")
         program = self.get(path)["program_sha256"]
-        xs = [float(word[1:]) for word in self.program(program).split() if word[0] == "X"]
-        self.assertGreater(self.get(machine.path)["status"]["work_position_mm"][0], 0)
-        self.assertLessEqual(self.get(machine.path)["status"]["work_position_mm"][0], max(xs))
+        # It ends where it began: at the lower left corner of what will be burnt.
+        corner = [min(axis) for axis in zip(*self.burn_points(self.program(program)))]
+        self.assertEqual(self.get(machine.path)["status"]["work_position_mm"][:2], corner)
         for wrong, pointer in (({"dx_mm": "a"}, "/dx_mm"), ({"feed_mm_per_min": 0}, "/feed_mm_per_min")):
             self.assert_problem(machine.command("jog", **wrong), 422, "bad-field", pointer)
         self.assert_problem(machine.command("dance"), 422, "bad-field", "/command")
@@ -358,6 +361,17 @@ class Machines(CutsOf):
         self.wait(machine.path, lambda device: "> $I" in device["console"])
         self.ask("POST", path + "/abort")
         self.assertEqual(machine.burnt_in_all_mm(), 0)
+
+    def burn_points(self, program):
+        at, burns = {"X": 0.0, "Y": 0.0}, False
+        for line in program.splitlines():
+            if line.startswith(";"):
+                continue
+            burns = {"G0": False, "G1": True}.get(line.split()[0], burns)
+            before = tuple(at.values())
+            at.update({word[0]: float(word[1:]) for word in line.split() if word[0] in at})
+            if burns:
+                yield from (before, tuple(at.values()))
 
     def program(self, sha256):
         for artifact in self.get(f"/jobs/{self.job['id']}/artifacts")["artifacts"]:
