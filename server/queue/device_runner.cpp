@@ -32,10 +32,6 @@ std::string how_far(const CutRecord& cut, const drivers::JobProgress& progress) 
         cut.sheet(), progress.lines_acknowledged, progress.lines_total, progress.lines_sent);
 }
 
-CutState before_arming(const CutRecord& cut) {
-    return cut.position > 0 ? CutState::AwaitingSheet : CutState::Waiting;
-}
-
 // Everything a client sees of a status; equal text, nothing to tell.
 std::string fingerprint(const drivers::DeviceStatus& status) {
     return fmt::format("{} {} {} {} {} {} {} {} {}", drivers::to_string(status.state),
@@ -90,72 +86,6 @@ void DeviceRunner::loop(const std::stop_token& stop) {
     } catch (const std::exception& error) {
         spdlog::error("device {}: {}", record_.id, error.what());
     }
-}
-
-void DeviceRunner::connect(const std::stop_token& stop) {
-    constexpr auto kPause = 2s;
-    {
-        std::unique_lock lock(mutex_);
-        if (!may_connect_) {
-            nudged_.wait_for(lock, stop, kPause, [this] { return may_connect_; });
-            return;
-        }
-    }
-    try {
-        disarm();
-        std::shared_ptr<drivers::Device> opened = hooks_.open(record_.uri);
-        opened->on_line = [this](std::string_view line) { keep_line(line); };
-        disarm();
-        say("");
-        spdlog::info("device {}: opened {}", record_.id, record_.uri);
-        const std::scoped_lock lock(mutex_);
-        device_ = std::move(opened);
-    } catch (const std::exception& error) {
-        if (status().message != error.what()) {
-            spdlog::warn("device {}: {}", record_.id, error.what());
-        }
-        say(error.what());
-        std::unique_lock lock(mutex_);
-        nudged_.wait_for(lock, stop, kPause, [] { return false; });
-    }
-}
-
-// An armed cut must not fire when its machine comes back, with hands in the bed.
-void DeviceRunner::disarm() {
-    for (const CutRecord& cut : store_.cuts.open_on(record_.id)) {
-        if (cut.state == CutState::Armed) {
-            store_.cuts.move(cut.id, CutState::Armed, before_arming(cut),
-                             "the machine was not connected");
-        }
-    }
-}
-
-void DeviceRunner::lose_link(const std::string& why) {
-    spdlog::warn("device {}: {}", record_.id, why);
-    drivers::JobProgress last = device()->progress();
-    bool was_cutting = false;
-    {
-        const std::scoped_lock lock(mutex_);
-        device_.reset();
-        was_cutting = current_.has_value();
-        may_connect_ = !was_cutting;
-        message_ = was_cutting ? why + "; look at the machine, then reset" : why;
-    }
-    framing_ = false;
-    if (was_cutting) {
-        last.outcome = JobOutcome::LinkLost;
-        last.reason = why;
-        lost_ = last;
-    }
-}
-
-void DeviceRunner::settle_lost(const std::stop_token& stop) {
-    {
-        std::unique_lock lock(mutex_);
-        nudged_.wait_until(lock, stop, next_store_try_, [] { return false; });
-    }
-    settle(*lost_);
-    lost_.reset();
 }
 
 void DeviceRunner::step() {
@@ -289,7 +219,7 @@ void DeviceRunner::take_up(const CutRecord& cut) {
     if (now.state != MachineState::Idle) {
         // An armed cut must not fire later, when someone clears an alarm with hands in the bed.
         store_.cuts.move(
-            cut.id, CutState::Armed, before_arming(cut),
+            cut.id, CutState::Armed, cut.before_arming(),
             fmt::format("the machine is not idle but {}", drivers::to_string(now.state)));
         return;
     }

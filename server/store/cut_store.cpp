@@ -334,8 +334,7 @@ std::vector<std::string> CutStore::recover() {
         }
         for (const CutRecord& cut : open) {
             if (cut.state == CutState::Armed) {
-                const bool between = cut.position > 0;
-                move_cut(database, cut, between ? CutState::AwaitingSheet : CutState::Waiting, "");
+                move_cut(database, cut, cut.before_arming(), "");
                 continue;
             }
             devices.push_back(cut.device);

@@ -105,7 +105,7 @@ void remember_key(SQLite::Database& database, const IdempotencyKey& key, const s
 }
 
 std::string insert_job(SQLite::Database& database, const NewJob& job) {
-    const std::string id = new_id("j_");
+    std::string id = new_id("j_");
     SQLite::Statement insert(
         database,
         "INSERT INTO job(id, name, state, created_ms, updated_ms, file_name, "

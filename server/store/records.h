@@ -77,6 +77,11 @@ struct CutRecord {
 
     int sheet() const { return sheets.at(position); }
     bool on_last_sheet() const { return position + 1 == sheets.size(); }
+
+    // Where an armed cut goes back to.
+    CutState before_arming() const {
+        return position > 0 ? CutState::AwaitingSheet : CutState::Waiting;
+    }
 };
 
 struct DeviceRecord {

@@ -31,6 +31,12 @@ struct ByteRange {
     std::int64_t last = 0;
 };
 
+HttpProblem beyond_the_end(std::int64_t size) {
+    HttpProblem problem(416, "bad-range", fmt::format("the file has {} bytes", size));
+    problem.headers["Content-Range"] = fmt::format("bytes */{}", size);
+    return problem;
+}
+
 // One range of RFC 9110, section 14.1.2; nothing for a header that is to be ignored. Throws
 // HttpProblem (416).
 std::optional<ByteRange> range_in(const Request& request, std::int64_t size) {
@@ -52,9 +58,7 @@ std::optional<ByteRange> range_in(const Request& request, std::int64_t size) {
         return std::nullopt;
     }
     if (range.first > range.last) {
-        HttpProblem problem(416, "bad-range", fmt::format("the file has {} bytes", size));
-        problem.headers["Content-Range"] = fmt::format("bytes */{}", size);
-        throw problem;
+        throw beyond_the_end(size);
     }
     return range;
 }

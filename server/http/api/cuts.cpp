@@ -21,19 +21,22 @@ HttpProblem not_now(const CutRecord& cut, const std::string& action) {
             fmt::format("a cut that is {} does not take \"{}\"", to_string(cut.state), action)};
 }
 
+HttpProblem no_sheet_list() {
+    return {422, "bad-field", "sheets: must be a list of sheet numbers"};
+}
+
 std::vector<int> sheets_in(const json& body) {
     const auto found = body.find("sheets");
     if (found == body.end() || found->is_null()) {
         return {};
     }
-    const HttpProblem no_list(422, "bad-field", "sheets: must be a list of sheet numbers");
     if (!found->is_array()) {
-        throw no_list;
+        throw no_sheet_list();
     }
     std::vector<int> sheets;
     for (const json& sheet : *found) {
         if (!sheet.is_number_integer() || sheet < 1 || sheet > 1000000) {
-            throw no_list;
+            throw no_sheet_list();
         }
         sheets.push_back(sheet.get<int>());
     }

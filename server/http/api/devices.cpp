@@ -89,8 +89,7 @@ drivers::Jog jog_in(const json& body) {
 // One line, without the real-time letters that would act at once, past every check.
 std::string console_line_in(const json& body) {
     const auto found = body.find("line");
-    const std::string line =
-        found != body.end() && found->is_string() ? found->get<std::string>() : "";
+    std::string line = found != body.end() && found->is_string() ? found->get<std::string>() : "";
     constexpr std::size_t kLongest = 80;
     bool printable = !line.empty() && line.size() <= kLongest;
     for (const char c : line) {
