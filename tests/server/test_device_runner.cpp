@@ -189,7 +189,7 @@ protected:
         runner->wake();
     }
     CutRecord cutting(int sheets = 1) {
-        const CutRecord cut = add_cut(sheets);
+        CutRecord cut = add_cut(sheets);
         arm(cut);
         EXPECT_TRUE(reaches(cut, CutState::Cutting));
         EXPECT_TRUE(eventually([this] { return script.started() == 1; }));
