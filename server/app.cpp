@@ -27,8 +27,12 @@ ComputeOptions compute_options(const Config& config) {
 
 }  // namespace
 
-App::App(const Config& config, AppParts parts) : parts_(std::move(parts)), hub_(event_source()) {
+App::App(const Config& config, AppParts parts)
+    : parts_(std::move(parts)),
+      burn_logs_(std::filesystem::absolute(config.state) / "burns"),
+      hub_(event_source()) {
     store_ = std::make_unique<Store>(config.state, [this] { hub_.wake(); });
+    std::filesystem::create_directories(burn_logs_);
     // Before any machine is touched: another daemon may have them.
     edge_ = std::make_unique<Edge>(
         edge_options(config), [this](Request& request) { return route(*this, request); }, hub_);

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -42,12 +43,14 @@ public:
     DeviceFleet& fleet() { return *fleet_; }
     EventHub& hub() { return hub_; }
     const AppParts& parts() const { return parts_; }
+    const std::filesystem::path& burn_logs() const { return burn_logs_; }
     int port() const { return edge_->port(); }
 
 private:
     EventSource event_source();
 
     const AppParts parts_;
+    const std::filesystem::path burn_logs_;  // Folder of simulated machines' beam logs.
     EventHub hub_;
     std::unique_ptr<Store> store_;
     std::unique_ptr<ComputeRunner> compute_;

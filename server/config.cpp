@@ -190,4 +190,19 @@ void check_device(const DeviceRecord& device) {
     }
 }
 
+void check_remote_device(const DeviceRecord& device, const std::filesystem::path& burn_logs) {
+    check_device(device);
+    constexpr std::string_view kOption = "burn=";
+    const std::string_view uri = device.uri;
+    for (std::size_t at = uri.find(kOption); at != std::string_view::npos;
+         at = uri.find(kOption, at + 1)) {
+        const std::size_t begin = at + kOption.size();
+        const std::filesystem::path log = uri.substr(begin, uri.find('&', begin) - begin);
+        if (log.lexically_normal() != log || log.parent_path() != burn_logs ||
+            !log.has_filename()) {
+            throw BadConfig("uri: burn must be a file in " + burn_logs.string());
+        }
+    }
+}
+
 }  // namespace leafcutter::server

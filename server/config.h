@@ -46,4 +46,8 @@ std::filesystem::path default_state_dir();
 // Throws BadConfig unless `device` has a plain id, a name and a URI this build can open.
 void check_device(const DeviceRecord& device);
 
+// The same for a device that comes over the network: its simulated machine may keep a beam log only
+// as a file of `burn_logs`, or anyone could have the daemon overwrite any file.
+void check_remote_device(const DeviceRecord& device, const std::filesystem::path& burn_logs);
+
 }  // namespace leafcutter::server

@@ -151,7 +151,7 @@ def wait_for_ctrl_c(daemon):
 
 def run(arguments, folder):
     binary = Path(arguments.leafcutter).resolve()
-    burn_log = folder / "burn.jsonl"
+    burn_log = folder / "state/burns/demo.jsonl"
     print(f"leafcutter demo: sample surface '{arguments.sample}', simulated laser")
     mesh = folder / f"{arguments.sample}.obj"
     subprocess.run([str(binary), "sample", arguments.sample, "-o", str(mesh)], check=True)

@@ -99,7 +99,7 @@ class Machine:
         self.test = test
         self.path = f"/devices/{name}"
         self.name = name
-        self.log = Path(test.folder.name) / f"{name}.burn"
+        self.log = Path(test.folder.name) / "state/burns" / f"{name}.jsonl"
         self.fields = {"name": name, "uri": f"sim:grbl?speed={speed}&burn={self.log}{more}", "auto_start": auto_start}
         status, _, answer = test.ask("PUT", self.path, self.fields)
         test.assertIn(status, (200, 201), answer)

@@ -46,7 +46,9 @@ double number_at(const json& body, const char* key, double otherwise) {
     return found->get<double>();
 }
 
-DeviceRecord device_in(const json& body, const std::string& id) {
+DeviceRecord device_in(const json& body,
+                       const std::string& id,
+                       const std::filesystem::path& burn_logs) {
     DeviceRecord device;
     device.id = id;
     device.name = id;
@@ -68,7 +70,7 @@ DeviceRecord device_in(const json& body, const std::string& id) {
         }
     }
     try {
-        check_device(device);
+        check_remote_device(device, burn_logs);
     } catch (const BadConfig& error) {
         throw HttpProblem(422, "bad-field", error.what());
     }
@@ -138,7 +140,7 @@ Response show_device(App& app, Request& request) {
 Response put_device(App& app, Request& request) {
     const std::string& id = request.capture("id");
     const bool is_new = app.fleet().find(id) == nullptr;
-    app.fleet().put(device_in(read_json_object(request), id));
+    app.fleet().put(device_in(read_json_object(request), id, app.burn_logs()));
     app.hub().post("device", id);
     return json_response(device_json(*find_device(app, request)), is_new ? 201 : 200);
 }
