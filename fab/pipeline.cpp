@@ -188,7 +188,14 @@ private:
     }
 
     void make_quads(const Context& context) {
-        const geometry::GridOptions& grid = result_.params.grid;
+        geometry::GridOptions grid = result_.params.grid;
+        if (grid.junctions == geometry::Junctions::Conforming &&
+            result_.foliation.cylinders.size() > 1) {
+            grid.junctions = geometry::Junctions::Independent;
+            warnings_.emplace_back(
+                "junctions: cylinders are woven one by one and glued; conforming junctions come "
+                "later");
+        }
         result_.quads = geometry::build_quad_mesh(result_.foliation, grid, context);
         const geometry::ClosestPoint surface(geometry::to_triangle_mesh(mesh_));
         result_.surface_area_mm2 = surface.total_area();

@@ -4,6 +4,7 @@
 
 #include "geometry/cases/annulus.h"
 #include "geometry/cases/disk.h"
+#include "geometry/cases/pants.h"
 #include "geometry/cases/torus.h"
 #include "geometry/topology.h"
 
@@ -16,10 +17,8 @@ namespace {
 
 void check_mode_is_built(FoliationMode mode) {
     switch (mode) {
-        case FoliationMode::Pants:
         case FoliationMode::OneForm:
-            refuse("mode-not-built",
-                   "foliation.mode: pants and one-form are not supported yet; use auto");
+            refuse("mode-not-built", "foliation.mode: one-form is not supported yet; use auto");
         case FoliationMode::SpherePolar:
         case FoliationMode::SpherePillowcase:
             refuse(
@@ -27,6 +26,7 @@ void check_mode_is_built(FoliationMode mode) {
                 "foliation.mode: the sphere modes are not supported yet; cut a hole into the model "
                 "and use auto");
         case FoliationMode::Auto:
+        case FoliationMode::Pants:
         case FoliationMode::Disk:
         case FoliationMode::Annulus:
         case FoliationMode::Torus:
@@ -50,9 +50,7 @@ FoliationMode natural_mode(const Topology& topology) {
                "or two (an annulus)");
     }
     if (topology.euler < 0) {
-        refuse("euler-not-supported",
-               "surfaces of Euler characteristic " + std::to_string(topology.euler) + figures +
-                   " are not supported yet; only disks, annuli and tori are");
+        return FoliationMode::Pants;
     }
     if (topology.euler == 1) {
         return FoliationMode::Disk;
@@ -66,6 +64,8 @@ const char* name_of(FoliationMode mode) {
             return "disk";
         case FoliationMode::Annulus:
             return "annulus";
+        case FoliationMode::Pants:
+            return "surface for pants";
         default:
             return "torus";
     }
@@ -99,6 +99,8 @@ Foliation compute_foliation(const Mesh& mesh,
     Foliation foliation;
     if (natural == FoliationMode::Disk) {
         foliation = foliate_disk(surface, topology.boundary_loops[0], options, context);
+    } else if (natural == FoliationMode::Pants) {
+        foliation = foliate_pants(surface, topology.boundary_loops, options, context);
     } else if (natural == FoliationMode::Annulus) {
         foliation = foliate_annulus(
             surface, {topology.boundary_loops[0], topology.boundary_loops[1]}, options, context);

@@ -103,9 +103,8 @@ struct Foliation {
 // Computes the foliations of a connected surface.
 //
 // Guarantees: no triangle of any chart is flipped or degenerate in (g, f).
-// Throws Error(NotSupported) for a surface whose Euler characteristic is below 0 or that is a
-// sphere, Error(BadOption) for corners that are not four different vertices of the one boundary
-// loop, and Error(SelfCheck) where a result fails its check.
+// Throws Error(NotSupported) for a sphere, Error(BadOption) for corners that are not four different
+// vertices of the one boundary loop, and Error(SelfCheck) where a result fails its check.
 Foliation compute_foliation(const Mesh& mesh,
                             const FoliationOptions& options = {},
                             const Context& context = {});

@@ -11,7 +11,6 @@ namespace leafcutter::geometry {
 namespace {
 
 // Bounds of the weights of positive_edges(). The cotangent of a good triangle is about 0.6.
-constexpr double kLeastWeight = 0.02;
 constexpr double kLargestWeight = 50.0;
 
 std::size_t at(int index) {
@@ -47,7 +46,9 @@ std::vector<WeightedEdge> cotangent_edges(const IntrinsicTriangulation& triangul
     return out;
 }
 
-std::vector<WeightedEdge> positive_edges(const TriangleMesh& mesh, const HalfEdges& edges) {
+std::vector<WeightedEdge> positive_edges(const TriangleMesh& mesh,
+                                         const HalfEdges& edges,
+                                         double least) {
     std::vector<WeightedEdge> out;
     out.reserve(at(edges.size()));
     for (int h = 0; h < edges.size(); ++h) {
@@ -58,7 +59,7 @@ std::vector<WeightedEdge> positive_edges(const TriangleMesh& mesh, const HalfEdg
         if (edges.twin_of(h) >= 0) {
             weight += 0.5 * extrinsic_cotangent(mesh, edges, edges.twin_of(h));
         }
-        weight = std::clamp(weight, kLeastWeight, kLargestWeight);
+        weight = std::clamp(weight, least, kLargestWeight);
         out.push_back({edges.from_of(h), edges.to_of(h), weight, h});
     }
     return out;

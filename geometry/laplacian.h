@@ -32,7 +32,9 @@ std::vector<WeightedEdge> cotangent_edges(const IntrinsicTriangulation& triangul
 
 // Cotangent weights of the triangles as they are, forced into a positive interval: any positive
 // weights give an embedding in the theorems of Tutte and of Gortler, Gotsman and Thurston.
-std::vector<WeightedEdge> positive_edges(const TriangleMesh& mesh, const HalfEdges& edges);
+std::vector<WeightedEdge> positive_edges(const TriangleMesh& mesh,
+                                         const HalfEdges& edges,
+                                         double least = 0.02);
 
 // Half the sum of weight x difference squared. `jump` has an entry for each edge or is empty.
 double dirichlet_energy(std::span<const WeightedEdge> edges,

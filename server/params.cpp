@@ -153,8 +153,9 @@ void read_corners(ObjectReader& reader, fab::FoliationParams& foliation) {
 }
 
 void refuse_later_modes(ObjectReader& reader, const fab::FoliationParams& foliation) {
-    constexpr std::array kComputed = {FoliationMode::Auto, FoliationMode::Disk,
-                                      FoliationMode::Annulus, FoliationMode::Torus};
+    constexpr std::array kComputed = {FoliationMode::Auto, FoliationMode::Pants,
+                                      FoliationMode::Disk, FoliationMode::Annulus,
+                                      FoliationMode::Torus};
     if (std::find(kComputed.begin(), kComputed.end(), foliation.mode) == kComputed.end()) {
         refuse_unsupported(reader.path_of("mode"), name_of(kModes, foliation.mode));
     }

@@ -115,10 +115,16 @@ Foliation foliate_annulus(const TriangleMesh& mesh,
                           const std::array<std::vector<int>, 2>& loops,
                           const FoliationOptions& options,
                           const Context& context) {
-    std::array<std::vector<int>, 2> rings = loops;
-    if (arc_lengths(mesh, rings[1]).back() > arc_lengths(mesh, rings[0]).back()) {
-        std::swap(rings[0], rings[1]);
+    if (arc_lengths(mesh, loops[1]).back() > arc_lengths(mesh, loops[0]).back()) {
+        return foliate_ring(mesh, {loops[1], loops[0]}, options, context);
     }
+    return foliate_ring(mesh, loops, options, context);
+}
+
+Foliation foliate_ring(const TriangleMesh& mesh,
+                       const std::array<std::vector<int>, 2>& rings,
+                       const FoliationOptions& options,
+                       const Context& context) {
     const int lower = rings[0].front();
     const int upper = rings[1].front();
     SolvedChart solved = solve_resolved(

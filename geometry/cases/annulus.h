@@ -19,4 +19,10 @@ Foliation foliate_annulus(const TriangleMesh& mesh,
                           const FoliationOptions& options,
                           const Context& context);
 
+// The same with f = 0 on the first loop, whatever their lengths.
+Foliation foliate_ring(const TriangleMesh& mesh,
+                       const std::array<std::vector<int>, 2>& rings,
+                       const FoliationOptions& options,
+                       const Context& context);
+
 }  // namespace leafcutter::geometry

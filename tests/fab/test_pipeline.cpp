@@ -11,12 +11,14 @@
 #include "fab/warnings.h"
 #include "geometry/error.h"
 #include "geometry/io/mesh_writer.h"
+#include "geometry/samples.h"
 
 namespace leafcutter::fab {
 namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 // A wavy sheet of n x n squares, each cut in two; side 1.
@@ -127,6 +129,21 @@ TEST(Weave, PutsBothFamiliesOnOneSheetWhereTheyShareTheMaterial) {
     const PackageSummary made = weave_text(wavy_sheet(12), params);
     EXPECT_EQ(made.sheets, 1);
     EXPECT_THAT(made.package.find("layout.json")->bytes, HasSubstr("\"family\":\"both\""));
+}
+
+TEST(Weave, WeavesSeveralCylindersOneByOneAndSaysSo) {
+    const std::string model = geometry::write_obj(geometry::make_sample("double-torus", 3000));
+    const PackageSummary made = weave_text(model, small_job(), "double-torus.obj");
+    EXPECT_THAT(made.warnings, Contains(StartsWith("junctions: ")));
+    const std::string& quads = made.package.find("quads.obj")->bytes;
+    EXPECT_THAT(quads, HasSubstr("g cylinder_2\n"));  // 3g - 3 = 3 cylinders.
+    EXPECT_LT(number_behind(made.package.find("report.json")->bytes, "largest_deviation_relative"),
+              1e-3);
+    JobParams independent = small_job();
+    independent.grid.junctions = geometry::Junctions::Independent;
+    const PackageSummary wanted = weave_text(model, independent, "double-torus.obj");
+    EXPECT_THAT(wanted.warnings, Not(Contains(StartsWith("junctions: "))));
+    EXPECT_EQ(wanted.package.find("quads.obj")->bytes, quads);
 }
 
 TEST(Weave, RefusesUnknownMaterialsByTheirPath) {

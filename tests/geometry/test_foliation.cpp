@@ -43,12 +43,6 @@ TEST(Foliation, RefusesASphere) {
     expect_refusal(make_tetrahedron(), {}, ErrorKind::NotSupported, "sphere-not-supported");
 }
 
-TEST(Foliation, RefusesNegativeEulerCharacteristic) {
-    TriangleMesh two_holes = make_prism(12, 6, 1.0, 2.0);
-    two_holes.triangles.erase(two_holes.triangles.begin() + 60);
-    expect_refusal(two_holes, {}, ErrorKind::NotSupported, "euler-not-supported");
-}
-
 TEST(Foliation, RefusesSeveralComponents) {
     TriangleMesh two = make_square(4);
     const TriangleMesh other = make_square(3);
@@ -66,8 +60,10 @@ TEST(Foliation, RefusesModesThatDoNotFitOrAreNotBuilt) {
     expect_refusal(make_square(4), options, ErrorKind::BadOption, "mode-does-not-fit");
     options.mode = FoliationMode::Disk;
     expect_refusal(make_prism(8, 3, 1.0, 1.0), options, ErrorKind::BadOption, "mode-does-not-fit");
-    for (const FoliationMode mode : {FoliationMode::Pants, FoliationMode::OneForm,
-                                     FoliationMode::SpherePolar, FoliationMode::SpherePillowcase}) {
+    options.mode = FoliationMode::Pants;
+    expect_refusal(make_prism(8, 3, 1.0, 1.0), options, ErrorKind::BadOption, "mode-does-not-fit");
+    for (const FoliationMode mode : {FoliationMode::OneForm, FoliationMode::SpherePolar,
+                                     FoliationMode::SpherePillowcase}) {
         options.mode = mode;
         expect_refusal(make_square(4), options, ErrorKind::NotSupported, "mode-not-built");
     }

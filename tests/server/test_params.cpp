@@ -112,7 +112,7 @@ TEST(Params, RefuseImpossibleValuesByFullPath) {
 
 TEST(Params, SayWhatIsNotComputedYet) {
     for (const char* text :
-         {R"({"foliation": {"mode": "pants"}})", R"({"foliation": {"mode": "sphere-polar"}})",
+         {R"({"foliation": {"mode": "one-form"}})", R"({"foliation": {"mode": "sphere-polar"}})",
           R"({"foliation": {"pants": "user"}})", R"({"foliation": {"weights": [1, 2]}})",
           R"({"foliation": {"loops": [[1, 2, 3]]}})", R"({"foliation": {"poles": [1, 2]}})",
           R"({"foliation": {"punctures": [{"vertex": 1, "radius_mm": 2}]}})",

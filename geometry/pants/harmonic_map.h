@@ -1,0 +1,40 @@
+// The harmonic map to the dual tree: minimises the energy of section 3.3 in a homotopy class.
+//
+// The energy is convex and piecewise quadratic. Newton steps with frozen words alternate with exact
+// one-vertex minimisations (the paper's Algorithm 1, with tree distances) where words change.
+// Energies never rise.
+
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/context.h"
+#include "geometry/pants/tree_word.h"
+#include "geometry/pants/vertex_rings.h"
+
+namespace leafcutter::geometry {
+
+// Cold: far from the minimum, which a good many sweeps come first to undo. Warm: a solved map that
+// was refined.
+enum class MapStart { Cold, Warm };
+
+struct HarmonicMapReport {
+    double energy = 0.0;  // 1/2 sum of weight x distance squared.
+    int iterations = 0;   // Newton steps.
+    double residual =
+        0.0;  // Largest move of a vertex in one more sweep, by the largest edge weight.
+    bool converged = false;
+};
+
+// 1/2 sum of weight x distance squared.
+double map_energy(const GraphMap& map, const VertexRings& rings, std::span<const double> weights);
+
+// Improves `map` to the minimum in its class. `weights` are per mesh edge and positive.
+HarmonicMapReport solve_harmonic_map(GraphMap& map,
+                                     const VertexRings& rings,
+                                     std::span<const double> weights,
+                                     MapStart start,
+                                     const Context& context);
+
+}  // namespace leafcutter::geometry
