@@ -56,12 +56,13 @@ class Api:
 
 
 def show(text, last=False):
-    """One line that rewrites itself on a terminal, plain lines elsewhere."""
+    """One line that rewrites itself on a terminal; elsewhere a line for each new stage."""
+    stage = text.rstrip("0123456789 %")
     if sys.stdout.isatty():
         print(f"\r\033[K{text}", end="\n" if last else "", flush=True)
-    elif last or show.before != text:
-        print(text, flush=True)
-    show.before = text
+    elif last or show.before != stage:
+        print(text if last else stage, flush=True)
+    show.before = stage
 
 
 show.before = ""

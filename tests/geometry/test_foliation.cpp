@@ -62,8 +62,8 @@ TEST(Foliation, RefusesModesThatDoNotFitOrAreNotBuilt) {
     expect_refusal(make_prism(8, 3, 1.0, 1.0), options, ErrorKind::BadOption, "mode-does-not-fit");
     options.mode = FoliationMode::Pants;
     expect_refusal(make_prism(8, 3, 1.0, 1.0), options, ErrorKind::BadOption, "mode-does-not-fit");
-    for (const FoliationMode mode : {FoliationMode::OneForm, FoliationMode::SpherePolar,
-                                     FoliationMode::SpherePillowcase}) {
+    for (const FoliationMode mode :
+         {FoliationMode::OneForm, FoliationMode::SpherePolar, FoliationMode::SpherePillowcase}) {
         options.mode = mode;
         expect_refusal(make_square(4), options, ErrorKind::NotSupported, "mode-not-built");
     }
