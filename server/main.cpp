@@ -1,12 +1,14 @@
+#include <cstdio>
 #include <exception>
 
 #include <CLI/CLI.hpp>
 
 #include "server/cli/command.h"
 
-int main(int argc, char** argv) {
-    using namespace leafcutter::server;
+namespace leafcutter::server {
+namespace {
 
+int run(int argc, char** argv) {
     CLI::App app("Leafcutter: weaves any surface from laser-cut strips");
     app.set_version_flag("--version", LEAFCUTTER_VERSION);
     app.require_subcommand(1);
@@ -32,5 +34,17 @@ int main(int argc, char** argv) {
         return asked_for_help ? kDone : kRefused;
     } catch (const std::exception& error) {
         return report_error(error, common);
+    }
+}
+
+}  // namespace
+}  // namespace leafcutter::server
+
+int main(int argc, char** argv) {
+    try {
+        return leafcutter::server::run(argc, argv);
+    } catch (...) {
+        std::fputs("leafcutter: out of memory, or a mistake of ours\n", stderr);
+        return leafcutter::server::kFailed;
     }
 }
