@@ -252,11 +252,14 @@ class Attacked(unittest.TestCase):
             client.sendall(self.head(f"Content-Type: {headers['Content-Type']}",
                                      f"Content-Length: {len(body) + 1000}",
                                      target="POST /api/v1/jobs HTTP/1.1") + body[:-20])
-        deadline = time.monotonic() + 10
+        # The daemon may take the upload up only now: empty once says nothing, empty for a while does.
+        deadline = time.monotonic() + 20
         incoming = Path(self.folder.name) / "blobs" / "incoming"
-        while os.listdir(incoming) and time.monotonic() < deadline:
+        empty_looks = 0
+        while empty_looks < 20 and time.monotonic() < deadline:
+            empty_looks = 0 if os.listdir(incoming) else empty_looks + 1
             time.sleep(0.05)
-        self.assertEqual(os.listdir(incoming), [])
+        self.assertEqual(empty_looks, 20)
         self.assertEqual(self.daemon.call("GET", "/api/v1/jobs?limit=200")[1].count(b"cutoff"), before)
 
 
