@@ -46,9 +46,11 @@ const char* name_of(geometry::ChartShape shape) {
         case geometry::ChartShape::Annulus:
             return "annulus";
         case geometry::ChartShape::Torus:
+            return "torus";
+        case geometry::ChartShape::Pillowcase:
             break;
     }
-    return "torus";
+    return "pillowcase";
 }
 
 json input_json(const InputFacts& input) {

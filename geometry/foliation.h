@@ -40,11 +40,50 @@ enum class Refinement { Allowed, Off };
 
 enum class TorusRings { Short, Long };  // Which generator of a torus the leaves of F run around.
 
+// What cuts a surface into pairs of pants: level sets of a function alone, or first loops that are
+// contractible inside (handle loops) or outside (tunnel loops) the closed surface, or loops given.
+enum class PantsSource { Reeb, HandleLoops, TunnelLoops, User };
+
+// The function whose Reeb graph is used; Auto tries all and keeps the best.
+enum class SweepFunction { Auto, Harmonic, X, Y, Z, Fiedler };
+
+// Whether holes are opened at the tips of limbs, where cells would get far too large, or at given
+// places.
+enum class PunctureChoice { Auto, None, Given };
+
+struct Puncture {
+    int vertex = 0;
+    double radius = 0.0;  // On the surface, in units of the mesh.
+};
+
+// A boundary loop, by its number (those of the mesh in the order of Topology, then those of the
+// given punctures) or by one of its vertices.
+struct LoopName {
+    std::optional<int> number;
+    std::optional<int> vertex;
+};
+
+enum class Components { Each, Largest };
+
 struct FoliationOptions {
     FoliationMode mode = FoliationMode::Auto;
     std::optional<std::array<int, 4>> corners = {};  // Disk: boundary vertices, any order.
     TorusRings torus_rings = TorusRings::Short;
     Refinement refinement = Refinement::Allowed;
+
+    PantsSource pants = PantsSource::Reeb;
+    std::vector<std::vector<int>> loops = {};  // PantsSource::User: closed, each vertex joined to
+                                               // the next by a shortest path of edges.
+    SweepFunction function = SweepFunction::Auto;
+    std::optional<std::vector<double>> weights = {};  // h > 0 of each graph edge; else automatic.
+
+    std::optional<std::array<int, 2>> poles = {};  // SpherePolar: vertices.
+    std::vector<int> near = {};  // SpherePillowcase: four vertices near its singular points.
+    std::vector<LoopName> sources = {};  // OneForm: f = 0 there; else the longest loop.
+    std::vector<LoopName> sinks = {};    // OneForm: f = 1 there; else all other loops.
+    PunctureChoice puncture = PunctureChoice::Auto;
+    std::vector<Puncture> punctures = {};  // PunctureChoice::Given.
+    Components components = Components::Each;
 };
 
 // Target of the harmonic map. A torus has one edge and one node; a disk or annulus one edge, two
@@ -60,9 +99,11 @@ struct MetricGraph {
 };
 
 enum class ChartShape {
-    Rectangle,  // No period. g in [0, width], f in [0, height].
-    Annulus,    // One period (width, 0): rings close. f in [0, height].
-    Torus,      // Two periods, (width, 0) and (shear, height).
+    Rectangle,   // No period. g in [0, width], f in [0, height].
+    Annulus,     // One period (width, 0): rings close. f in [0, height].
+    Torus,       // Two periods, (width, 0) and (shear, height).
+    Pillowcase,  // An annulus with both end rings folded flat and closed: (g, 0) and (-g, 0) are
+                 // one point of the surface, and so are (g, height) and (2 shear - g, height).
 };
 
 // The preimage of one graph edge, cut out, with its parameterisation.
@@ -78,15 +119,33 @@ struct Cylinder {
 
     double width = 0.0;   // Range or period of g: the circumference of a ring.
     double height = 0.0;  // Range or period of f.
-    double shear = 0.0;   // Torus only: the g part of the second period.
+    double shear = 0.0;   // Torus: the g part of the second period. Pillowcase: place of a fold.
 
     double energy = 0.0;         // Dirichlet energy of f on this cylinder.
     double conformal_gap = 0.0;  // Certified upper over lower bound of the modulus, minus 1.
+    double flux_mismatch = 0.0;  // Largest relative difference of the flux of f through two leaves.
 };
 
+// A point where the number of prongs of F is not 2: 1 at the corners of a pillowcase, 3 where three
+// cylinders meet, 4 at a zero of a harmonic one-form.
 struct Singularity {
     Eigen::Vector3d position;
     int prongs = 0;
+};
+
+// How evenly large the cells of a grid of squares are on the surface: they grow and shrink with the
+// conformal factor, exponentially along limbs.
+struct CellSpread {
+    double variation = 0.0;  // Standard deviation over mean of cell areas.
+    double largest = 0.0;    // Edge, in mean edges, of the cells that hold the top 1 % of the area.
+};
+
+// Another way to foliate the same surface that was looked at.
+struct Alternative {
+    std::string name;  // As the options that choose it: "sphere-pillowcase", "pants with 5 holes"…
+    CellSpread spread;
+    double removed_area = 0.0;  // In units of the mesh, squared.
+    bool chosen = false;
 };
 
 struct Foliation {
@@ -94,9 +153,14 @@ struct Foliation {
     MetricGraph graph;
     std::vector<Cylinder> cylinders;
     std::vector<Singularity> singularities;
+    // Preimages of the graph's nodes, as polylines from singular point to singular point.
+    std::vector<std::vector<Eigen::Vector3d>> critical_graph;
     std::optional<std::array<int, 4>> corners;  // Disk: those used, mesh vertices.
+    std::vector<Puncture> punctures;            // Those opened.
     double energy = 0.0;
     int iterations = 0;
+    CellSpread spread;
+    std::vector<Alternative> alternatives;  // Including the one chosen, where there was a choice.
     std::vector<std::string> warnings;
 };
 

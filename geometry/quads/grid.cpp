@@ -51,6 +51,7 @@ Least least_counts(ChartShape shape, Parity parity) {
         case ChartShape::Rectangle:
             return {};
         case ChartShape::Annulus:
+        case ChartShape::Pillowcase:
             return {.rows = 1, .cols = even ? 4 : 3, .even_cols = even};
         case ChartShape::Torus:
             return {.rows = 3, .cols = even ? 4 : 3, .even_cols = even};
