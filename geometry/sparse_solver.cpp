@@ -22,11 +22,22 @@ struct SparseSolver::Backend {
     Backend& operator=(const Backend&) = delete;
     virtual ~Backend() = default;
     virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side) = 0;
+    virtual void refactor(const SymmetricMatrix& lower) = 0;
 };
 
 namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
+using MatrixView = Eigen::Map<const Matrix>;
+
+MatrixView view_of(const SymmetricMatrix& lower) {
+    return {lower.size,
+            lower.size,
+            static_cast<Eigen::Index>(lower.value.size()),
+            lower.column_start.data(),
+            lower.row.data(),
+            lower.value.data()};
+}
 
 Error singular_system() {
     return {ErrorKind::SelfCheck, "singular-system",
@@ -51,19 +62,25 @@ Matrix assemble(int size, const std::vector<MatrixEntry>& lower) {
 
 class LdltBackend final : public SparseSolver::Backend {
 public:
-    explicit LdltBackend(const Matrix& lower) {
-        factor_.compute(lower);
-        // LDLT also takes indefinite matrices; ours must have positive pivots only.
-        if (factor_.info() != Eigen::Success || !(factor_.vectorD().array() > 0.0).all()) {
-            throw singular_system();
-        }
+    explicit LdltBackend(const MatrixView& lower) {
+        factor_.analyzePattern(lower);
+        factorize(lower);
     }
+    void refactor(const SymmetricMatrix& lower) override { factorize(view_of(lower)); }
 
     Eigen::VectorXd solve(const Eigen::VectorXd& right_side) override {
         return factor_.solve(right_side);
     }
 
 private:
+    void factorize(const MatrixView& lower) {
+        factor_.factorize(lower);
+        // LDLT also takes indefinite matrices; ours must have positive pivots only.
+        if (factor_.info() != Eigen::Success || !(factor_.vectorD().array() > 0.0).all()) {
+            throw singular_system();
+        }
+    }
+
     Eigen::SimplicialLDLT<Matrix, Eigen::Lower> factor_;
 };
 
@@ -71,7 +88,8 @@ private:
 
 class CholmodBackend final : public SparseSolver::Backend {
 public:
-    explicit CholmodBackend(Matrix lower) : size_(static_cast<std::size_t>(lower.rows())) {
+    explicit CholmodBackend(const MatrixView& lower)
+        : size_(static_cast<std::size_t>(lower.rows())) {
         cholmod_start(&common_);
         common_.print = 0;
         // AMD alone: with one factorization for each pattern, trying several orderings costs more
@@ -80,12 +98,9 @@ public:
         common_.method[0].ordering = CHOLMOD_AMD;
         common_.postorder = 1;
         common_.final_ll = 1;  // LL' stops at a pivot <= 0, LDL' would go on.
-        cholmod_sparse view = view_of(lower);
+        cholmod_sparse view = cholmod_view_of(lower);
         factor_ = cholmod_analyze(&view, &common_);
-        const bool factored = factor_ != nullptr &&
-                              cholmod_factorize(&view, factor_, &common_) != 0 &&
-                              common_.status == CHOLMOD_OK && factor_->minor == factor_->n;
-        if (!factored) {
+        if (factor_ == nullptr || !factorize(view)) {
             release();
             throw singular_system();
         }
@@ -93,6 +108,13 @@ public:
     CholmodBackend(const CholmodBackend&) = delete;
     CholmodBackend& operator=(const CholmodBackend&) = delete;
     ~CholmodBackend() override { release(); }
+
+    void refactor(const SymmetricMatrix& lower) override {
+        cholmod_sparse view = cholmod_view_of(view_of(lower));
+        if (!factorize(view)) {
+            throw singular_system();
+        }
+    }
 
     Eigen::VectorXd solve(const Eigen::VectorXd& right_side) override {
         Eigen::VectorXd copy = right_side;  // CHOLMOD's C interface knows no const.
@@ -115,14 +137,20 @@ public:
     }
 
 private:
-    static cholmod_sparse view_of(Matrix& lower) {
+    bool factorize(cholmod_sparse& view) {
+        return cholmod_factorize(&view, factor_, &common_) != 0 && common_.status == CHOLMOD_OK &&
+               factor_->minor == factor_->n;
+    }
+
+    // CHOLMOD's C interface knows no const; it changes nothing here.
+    static cholmod_sparse cholmod_view_of(const MatrixView& lower) {
         cholmod_sparse view{};
         view.nrow = static_cast<std::size_t>(lower.rows());
         view.ncol = static_cast<std::size_t>(lower.cols());
         view.nzmax = static_cast<std::size_t>(lower.nonZeros());
-        view.p = lower.outerIndexPtr();
-        view.i = lower.innerIndexPtr();
-        view.x = lower.valuePtr();
+        view.p = const_cast<int*>(lower.outerIndexPtr());  // NOLINT(*-const-cast)
+        view.i = const_cast<int*>(lower.innerIndexPtr());  // NOLINT(*-const-cast)
+        view.x = const_cast<double*>(lower.valuePtr());    // NOLINT(*-const-cast)
         view.stype = -1;
         view.itype = CHOLMOD_INT;
         view.xtype = CHOLMOD_REAL;
@@ -158,21 +186,38 @@ Factorization default_factorization() {
     return is_available(Factorization::Cholmod) ? Factorization::Cholmod : Factorization::Ldlt;
 }
 
-SparseSolver::SparseSolver(int size,
-                           const std::vector<MatrixEntry>& lower,
-                           Factorization factorization) {
+namespace {
+
+std::unique_ptr<SparseSolver::Backend> make_backend(const MatrixView& lower,
+                                                    Factorization factorization) {
     if (!is_available(factorization)) {
         throw Error(ErrorKind::NotSupported, "no-cholmod",
                     "CHOLMOD is not in this build: configure with LEAFCUTTER_CHOLMOD=ON");
     }
-    Matrix matrix = assemble(size, lower);
 #ifdef LEAFCUTTER_HAVE_CHOLMOD
     if (factorization == Factorization::Cholmod) {
-        backend_ = std::make_unique<CholmodBackend>(std::move(matrix));
-        return;
+        return std::make_unique<CholmodBackend>(lower);
     }
 #endif
-    backend_ = std::make_unique<LdltBackend>(matrix);
+    return std::make_unique<LdltBackend>(lower);
+}
+
+}  // namespace
+
+SparseSolver::SparseSolver(int size,
+                           const std::vector<MatrixEntry>& lower,
+                           Factorization factorization) {
+    const Matrix matrix = assemble(size, lower);
+    backend_ = make_backend({matrix.rows(), matrix.cols(), matrix.nonZeros(),
+                             matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr()},
+                            factorization);
+}
+
+SparseSolver::SparseSolver(const SymmetricMatrix& lower, Factorization factorization)
+    : backend_(make_backend(view_of(lower), factorization)) {}
+
+void SparseSolver::refactor(const SymmetricMatrix& lower) {
+    backend_->refactor(lower);
 }
 
 SparseSolver::~SparseSolver() = default;

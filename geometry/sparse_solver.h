@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,6 +15,15 @@ struct MatrixEntry {
     int row = 0;
     int column = 0;
     double value = 0.0;
+};
+
+// The lower triangle by columns: entries of column j are column_start[j] to column_start[j + 1] -
+// 1, rows ascending, each place once.
+struct SymmetricMatrix {
+    int size = 0;
+    std::vector<int> column_start;
+    std::vector<int> row;
+    std::vector<double> value;
 };
 
 enum class Factorization {
@@ -32,9 +42,14 @@ public:
     SparseSolver(int size,
                  const std::vector<MatrixEntry>& lower,
                  Factorization factorization = default_factorization());
+    explicit SparseSolver(const SymmetricMatrix& lower,
+                          Factorization factorization = default_factorization());
     ~SparseSolver();
     SparseSolver(SparseSolver&&) noexcept;
     SparseSolver& operator=(SparseSolver&&) noexcept;
+
+    // Takes other values at the same places; the ordering is kept. Throws as the constructor does.
+    void refactor(const SymmetricMatrix& lower);
 
     // `right_side` has `size` entries.
     Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/pants/frozen_system.h"
 #include "geometry/pants/local_step.h"
-#include "geometry/sparse_solver.h"
 
 namespace leafcutter::geometry {
 namespace {
 
 constexpr int kMostIterations = 80;
 constexpr int kColdSweeps = 50;
-constexpr int kWarmSweeps = 3;
+constexpr int kWarmSweeps = 1;
 constexpr int kRescueSweeps = 5;
 constexpr int kHalvings = 8;
 // Two steps in a row that gain less than this part of the energy end the iteration.
@@ -33,6 +33,7 @@ public:
           weights_(weights),
           context_(context),
           step_(map, rings, weights),
+          system_(rings, weights, map.t.size()),
           standing_(map.t.size(), Standing::Free) {}
 
     HarmonicMapReport run(int first_sweeps) {
@@ -53,6 +54,8 @@ public:
             quiet = before - report.energy < kLeastGain * before && !blocked ? quiet + 1 : 0;
         }
         report.converged = quiet >= 2;
+        report.factorizations = system_.factorizations();
+        report.solves = system_.solves();
         report.residual = residual();
         return report;
     }
@@ -78,7 +81,7 @@ private:
     }
 
     double residual() {
-        const GraphMap before = map_;
+        const Saved before = save();
         double move = 0.0;
         double longest = 0.0;
         for (const MetricGraph::Edge& edge : map_.graph.edges) {
@@ -90,7 +93,8 @@ private:
                 move = std::max(move, std::abs(map_.t[at(v)] - before.t[at(v)]));
             }
         }
-        map_ = before;
+        restore(before);
+        step_.journal().on = false;
         return move / longest;
     }
 
@@ -98,88 +102,51 @@ private:
         return map_.fixed[at(v)] == 0 && standing_[at(v)] == Standing::Free;
     }
 
-    // Positions that minimise the energy with all words as they are.
-    std::vector<double> frozen_minimum() const {
-        std::vector<int> unknown(map_.t.size(), -1);
-        int unknowns = 0;
-        for (std::size_t v = 0; v < unknown.size(); ++v) {
-            if (is_active(static_cast<int>(v))) {
-                unknown[v] = unknowns++;
-            }
-        }
-        std::vector<MatrixEntry> matrix;
-        matrix.reserve(rings_.edges.size() * 3);
-        Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
-        for (std::size_t e = 0; e < rings_.edges.size(); ++e) {
-            add_edge(e, unknown, matrix, right);
-        }
-        std::vector<double> target = map_.t;
-        if (unknowns == 0) {
-            return target;
-        }
-        const Eigen::VectorXd solution = SparseSolver(unknowns, matrix).solve(right);
-        for (std::size_t v = 0; v < unknown.size(); ++v) {
-            if (unknown[v] >= 0) {
-                target[v] = solution[unknown[v]];
-            }
-        }
-        return target;
+    // What a step may change, but for words, which the journal keeps.
+    struct Saved {
+        std::vector<int> graph_edge;
+        std::vector<double> t;
+        std::vector<Standing> standing;
+        std::vector<signed char> gauge;
+    };
+
+    Saved save() {
+        step_.journal().on = true;
+        step_.journal().words.clear();
+        return {map_.graph_edge, map_.t, standing_, step_.journal().gauge};
     }
 
-    // The term w (constant - sa ta + sb tb)^2 of one mesh edge a -> b.
-    void add_edge(std::size_t e,
-                  const std::vector<int>& unknown,
-                  std::vector<MatrixEntry>& matrix,
-                  Eigen::VectorXd& right) const {
-        const MeshEdge& edge = rings_.edges[e];
-        const Word& word = map_.words[e];
-        double constant = 0.0;
-        double sa = 1.0;
-        double sb = 1.0;
-        if (!word.empty()) {
-            const bool leaves_forward = runs_forward(word.front());
-            const bool enters_forward = runs_forward(word.back());
-            sa = leaves_forward ? 1.0 : -1.0;
-            sb = enters_forward ? 1.0 : -1.0;
-            constant = map_.inner_length(word) +
-                       (leaves_forward ? map_.weight(edge_of(word.front())) : 0.0) +
-                       (enters_forward ? 0.0 : map_.weight(edge_of(word.back())));
+    void restore(const Saved& saved) {
+        map_.graph_edge = saved.graph_edge;
+        map_.t = saved.t;
+        standing_ = saved.standing;
+        StepJournal& journal = step_.journal();
+        journal.gauge = saved.gauge;
+        for (auto change = journal.words.rbegin(); change != journal.words.rend(); ++change) {
+            map_.words[at(change->first)] = std::move(change->second);
         }
-        const double w = weights_[e];
-        const int a = unknown[at(edge.from)];
-        const int b = unknown[at(edge.to)];
-        const double ta = map_.t[at(edge.from)];
-        const double tb = map_.t[at(edge.to)];
-        if (a >= 0) {
-            matrix.push_back({a, a, w});
-            right[a] += w * sa * (constant + (b < 0 ? sb * tb : 0.0));
-        }
-        if (b >= 0) {
-            matrix.push_back({b, b, w});
-            right[b] += w * sb * ((a < 0 ? sa * ta : 0.0) - constant);
-        }
-        if (a >= 0 && b >= 0) {
-            matrix.push_back({std::max(a, b), std::min(a, b), -w * sa * sb});
-        }
+        journal.words.clear();
     }
 
     void newton_step(double before) {
-        std::vector<double> direction = frozen_minimum();
-        for (std::size_t v = 0; v < direction.size(); ++v) {
-            direction[v] -= map_.t[v];
+        std::vector<char> active(map_.t.size());
+        for (std::size_t v = 0; v < active.size(); ++v) {
+            active[v] = is_active(static_cast<int>(v)) ? 1 : 0;
         }
-        const GraphMap saved = map_;
-        const std::vector<Standing> saved_standing = standing_;
+        const Eigen::VectorXd direction =
+            system_.newton_direction(map_, active, step_.journal().gauge, context_);
+        const Saved saved = save();
         double length = 1.0;
         for (int halving = 0; halving < kHalvings; ++halving) {
             apply(direction, length);
             if (energy() <= before) {
+                step_.journal().on = false;
                 return;
             }
-            map_ = saved;
-            standing_ = saved_standing;
+            restore(saved);
             length *= 0.5;
         }
+        step_.journal().on = false;
         for (int sweep = 0; sweep < kRescueSweeps; ++sweep) {
             sweep_all();
         }
@@ -191,14 +158,14 @@ private:
         Dart dart = 0;
     };
 
-    void apply(const std::vector<double>& direction, double length) {
+    void apply(const Eigen::VectorXd& direction, double length) {
         std::vector<Overshoot> over;
         for (int v = 0; v < static_cast<int>(direction.size()); ++v) {
             if (!is_active(v)) {
                 continue;
             }
             const double weight = map_.weight(map_.graph_edge[at(v)]);
-            const double target = map_.t[at(v)] + length * direction[at(v)];
+            const double target = map_.t[at(v)] + length * direction[v];
             map_.t[at(v)] = std::clamp(target, 0.0, weight);
             const double by = std::max(target - weight, -target);
             if (by > 0.0) {
@@ -268,6 +235,7 @@ private:
     std::span<const double> weights_;
     const Context& context_;
     LocalStep step_;
+    FrozenSystem system_;
     std::vector<Standing> standing_;
 };
 
@@ -289,6 +257,23 @@ HarmonicMapReport solve_harmonic_map(GraphMap& map,
                                      const Context& context) {
     return Solver(map, rings, weights, context)
         .run(start == MapStart::Cold ? kColdSweeps : kWarmSweeps);
+}
+
+void settle_vertices(GraphMap& map,
+                     const VertexRings& rings,
+                     std::span<const double> weights,
+                     std::span<const int> vertices,
+                     int passes) {
+    LocalStep step(map, rings, weights);
+    const auto settle = [&](int v) {
+        if (map.fixed[at(v)] == 0) {
+            step.centre(v);
+        }
+    };
+    for (int pass = 0; pass < passes; ++pass) {
+        std::for_each(vertices.begin(), vertices.end(), settle);
+        std::for_each(vertices.rbegin(), vertices.rend(), settle);
+    }
 }
 
 }  // namespace leafcutter::geometry

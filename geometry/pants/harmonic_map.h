@@ -15,15 +15,17 @@
 
 namespace leafcutter::geometry {
 
-// Cold: far from the minimum, which a good many sweeps come first to undo. Warm: a solved map that
-// was refined.
+// Cold: far from the minimum, which a good many sweeps come first to undo. Warm: a solved map
+// carried to a finer surface.
 enum class MapStart { Cold, Warm };
 
 struct HarmonicMapReport {
     double energy = 0.0;  // 1/2 sum of weight x distance squared.
     int iterations = 0;   // Newton steps.
+    int factorizations = 0;
+    int solves = 0;  // With those factors.
     double residual =
-        0.0;  // Largest move of a vertex in one more sweep, by the largest edge weight.
+        0.0;  // Largest move of a vertex in one more sweep, by the largest graph edge.
     bool converged = false;
 };
 
@@ -36,5 +38,12 @@ HarmonicMapReport solve_harmonic_map(GraphMap& map,
                                      std::span<const double> weights,
                                      MapStart start,
                                      const Context& context);
+
+// Puts the given vertices to their centres, all others held, forwards and backwards so many times.
+void settle_vertices(GraphMap& map,
+                     const VertexRings& rings,
+                     std::span<const double> weights,
+                     std::span<const int> vertices,
+                     int passes);
 
 }  // namespace leafcutter::geometry

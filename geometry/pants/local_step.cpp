@@ -35,7 +35,9 @@ bool contains_pair(const Word& word, Dart a, Dart b) {
 }  // namespace
 
 LocalStep::LocalStep(GraphMap& map, const VertexRings& rings, std::span<const double> weights)
-    : map_(map), rings_(rings), weights_(weights) {}
+    : map_(map), rings_(rings), weights_(weights) {
+    journal_.gauge.assign(map.t.size(), 1);
+}
 
 const Word& LocalStep::word_at(int slot) const {
     return map_.words[at(rings_.slots[at(slot)].edge)];
@@ -128,6 +130,9 @@ void LocalStep::hop(int v, Hop through) {
     for (const Seen& seen : seen_) {
         const RingSlot& slot = rings_.slots[at(seen.slot)];
         Word& stored = map_.words[at(slot.edge)];
+        if (journal_.on) {
+            journal_.words.emplace_back(slot.edge, stored);
+        }
         Word word = slot.forward ? std::move(stored) : reversed(stored);
         if (word.empty()) {
             word = {reversed(onto), reversed(dart)};
@@ -142,6 +147,9 @@ void LocalStep::hop(int v, Hop through) {
             }
         }
         stored = slot.forward ? std::move(word) : reversed(word);
+    }
+    if (runs_forward(onto) != runs_forward(dart)) {
+        journal_.gauge[at(v)] = static_cast<signed char>(-journal_.gauge[at(v)]);
     }
     map_.graph_edge[at(v)] = edge_of(onto);
     map_.t[at(v)] = runs_forward(onto) ? 0.0 : map_.weight(edge_of(onto));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/pants/tree_word.h"
@@ -17,10 +18,23 @@ enum class Standing : char {
     Blocked,  // Just before a node it would pass, but moving on would pinch off an island.
 };
 
+// What steps did to a map, so that they can be taken back.
+struct StepJournal {
+    bool on = false;
+    std::vector<std::pair<int, Word>> words;  // Mesh edges with the words they had, oldest first.
+
+    // Per vertex 1 or -1: changes sign whenever the vertex passes from an edge of the tree to one
+    // that runs the other way as seen from it. Conjugation with it carries the frozen system of one
+    // combinatorics nearly into that of another.
+    std::vector<signed char> gauge;
+};
+
 class LocalStep {
 public:
     // All three are changed or read through the lifetime of this.
     LocalStep(GraphMap& map, const VertexRings& rings, std::span<const double> weights);
+
+    StepJournal& journal() { return journal_; }
 
     // Puts vertex `v` at its centre.
     Standing centre(int v);
@@ -55,6 +69,7 @@ private:
     std::span<const double> weights_;
     std::vector<Seen> seen_;
     int legs_ = 0;
+    StepJournal journal_;
 };
 
 }  // namespace leafcutter::geometry
