@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,11 +19,36 @@ struct ScaleParams {
     std::optional<double> longest_side_mm = 300.0;
 };
 
+struct PunctureParams {
+    int vertex = 0;
+    double radius_mm = 0.0;  // On the surface.
+};
+
+// A boundary loop: its number as `leafcutter inspect` lists them, or else some of its vertices.
+struct LoopParams {
+    std::optional<int> number;
+    std::vector<int> vertices;
+};
+
 // The foliation section as written: vertex numbers are those of the input file.
 struct FoliationParams {
     geometry::FoliationMode mode = geometry::FoliationMode::Auto;
     geometry::TorusRings torus_rings = geometry::TorusRings::Short;
     std::optional<std::array<int, 4>> corners;
+
+    geometry::PantsSource pants = geometry::PantsSource::Reeb;
+    std::vector<std::vector<int>> loops;  // PantsSource::User only.
+    geometry::SweepFunction function = geometry::SweepFunction::Auto;
+    std::optional<std::vector<double>> weights;  // Of the graph's edges; else automatic.
+
+    std::optional<std::array<int, 2>> poles;
+    std::vector<int> near;  // Vertices near the four singular points of a pillowcase, or none.
+    std::vector<LoopParams> sources;
+    std::vector<LoopParams> sinks;
+
+    geometry::PunctureChoice puncture = geometry::PunctureChoice::Auto;
+    std::vector<PunctureParams> punctures;  // PunctureChoice::Given only.
+    geometry::Components components = geometry::Components::Each;
 };
 
 enum class WeavePattern { Plain, Twill2x2, DoubleWarp, DoubleWeft, Satin5, Basket2x2, Matrix };

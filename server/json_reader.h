@@ -24,6 +24,9 @@ struct Range {
     bool above_low = false;
 };
 
+inline constexpr double kLargestLengthMm = 100'000.0;
+inline constexpr Range kPositiveLength{0.0, kLargestLengthMm, true};
+
 // Throws geometry::Error(BadOption) saying "path: problem".
 [[noreturn]] void refuse_param(const std::string& path, const std::string& problem);
 

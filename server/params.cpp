@@ -1,9 +1,7 @@
 #include "server/params.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -11,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/json_reader.h"
+#include "server/params_foliation.h"
 #include "server/params_names.h"
 
 namespace leafcutter::server {
@@ -18,19 +17,8 @@ namespace leafcutter::server {
 namespace {
 
 using fab::JobParams;
-using geometry::FoliationMode;
 using nlohmann::json;
 
-template <typename Value, std::size_t kNames>
-void read_choice(ObjectReader& reader,
-                 std::string_view key,
-                 Value& target,
-                 const ObjectReader::Choice<Value> (&names)[kNames]) {
-    reader.choice<Value>(key, target, names);
-}
-
-constexpr double kLargestLengthMm = 100'000.0;
-constexpr Range kPositiveLength{0.0, kLargestLengthMm, true};
 constexpr Range kLength{0.0, kLargestLengthMm};
 constexpr Range kCount{1.0, 100'000.0};
 
@@ -50,140 +38,6 @@ void read_scale(ObjectReader& reader, fab::ScaleParams& scale) {
         scale.longest_side_mm =
             read_number(*side, reader.path_of("longest_side_mm"), kPositiveLength);
     }
-}
-
-// Keys whose shape is checked and whose use is refused, as long as nothing computes them.
-void read_later_lists(ObjectReader& reader) {
-    for (const char* key : {"loops", "sources", "sinks"}) {
-        if (const json* value = reader.get(key)) {
-            if (!value->is_array()) {
-                refuse_param(reader.path_of(key), "must be a list of loops");
-            }
-            for (std::size_t i = 0; i < value->size(); ++i) {
-                read_integers((*value)[i], fmt::format("{}[{}]", reader.path_of(key), i));
-            }
-            if (!value->empty()) {
-                refuse_unsupported(reader.path_of(key), "loops chosen by hand");
-            }
-        }
-    }
-    if (const json* value = reader.get("poles")) {
-        if (read_integers(*value, reader.path_of("poles")).size() != 2) {
-            refuse_param(reader.path_of("poles"), "must be two vertices");
-        }
-        refuse_unsupported(reader.path_of("poles"), "spheres");
-    }
-}
-
-void read_punctures(ObjectReader& reader) {
-    const json* value = reader.get("punctures");
-    if (value == nullptr) {
-        return;
-    }
-    const std::string path = reader.path_of("punctures");
-    if (value->is_string()) {
-        const std::string name = value->get<std::string>();
-        if (name != "auto" && name != "none") {
-            refuse_param(path, "must be auto, none or a list of punctures");
-        }
-        return;
-    }
-    if (!value->is_array()) {
-        refuse_param(path, "must be auto, none or a list of punctures");
-    }
-    for (std::size_t i = 0; i < value->size(); ++i) {
-        ObjectReader puncture((*value)[i], fmt::format("{}[{}]", path, i));
-        int vertex = 0;
-        double radius_mm = 0.0;
-        puncture.integer("vertex", vertex, {});
-        puncture.number("radius_mm", radius_mm, kPositiveLength);
-        puncture.finish();
-    }
-    if (!value->empty()) {
-        refuse_unsupported(path, "punctures chosen by hand");
-    }
-}
-
-void read_singularities(ObjectReader& reader) {
-    const json* value = reader.get("singularities");
-    if (value == nullptr) {
-        return;
-    }
-    const std::string path = reader.path_of("singularities");
-    if (!value->is_array()) {
-        refuse_param(path, "must be a list");
-    }
-    for (std::size_t i = 0; i < value->size(); ++i) {
-        ObjectReader singularity((*value)[i], fmt::format("{}[{}]", path, i));
-        int near = 0;
-        singularity.integer("near", near, {});
-        singularity.finish();
-    }
-    if (!value->empty()) {
-        refuse_unsupported(path, "singularities chosen by hand");
-    }
-}
-
-void read_weights(ObjectReader& reader) {
-    const json* value = reader.get("weights");
-    if (value == nullptr || (value->is_string() && value->get<std::string>() == "auto")) {
-        return;
-    }
-    const std::string path = reader.path_of("weights");
-    if (!value->is_array()) {
-        refuse_param(path, "must be auto or a list of numbers");
-    }
-    for (std::size_t i = 0; i < value->size(); ++i) {
-        read_number((*value)[i], fmt::format("{}[{}]", path, i), {0.0, 1e6, true});
-    }
-    refuse_unsupported(path, "weights of the metric graph");
-}
-
-void read_corners(ObjectReader& reader, fab::FoliationParams& foliation) {
-    const json* value = reader.get("corners");
-    if (value == nullptr) {
-        return;
-    }
-    const std::string path = reader.path_of("corners");
-    const std::vector<int> corners = read_integers(*value, path);
-    if (corners.size() != 4 || std::set<int>(corners.begin(), corners.end()).size() != 4) {
-        refuse_param(path, "must be four different vertices");
-    }
-    foliation.corners = std::array<int, 4>{corners[0], corners[1], corners[2], corners[3]};
-}
-
-void refuse_later_modes(ObjectReader& reader, const fab::FoliationParams& foliation) {
-    constexpr std::array kComputed = {FoliationMode::Auto, FoliationMode::Pants,
-                                      FoliationMode::Disk, FoliationMode::Annulus,
-                                      FoliationMode::Torus};
-    if (std::find(kComputed.begin(), kComputed.end(), foliation.mode) == kComputed.end()) {
-        refuse_unsupported(reader.path_of("mode"), name_of(kModes, foliation.mode));
-    }
-    constexpr ObjectReader::Choice<int> kPants[] = {
-        {"reeb", 0}, {"handle-loops", 1}, {"tunnel-loops", 2}, {"user", 3}};
-    int chosen_pants = 0;
-    read_choice(reader, "pants", chosen_pants, kPants);
-    if (chosen_pants != 0) {
-        refuse_unsupported(reader.path_of("pants"), "pants decompositions");
-    }
-    constexpr ObjectReader::Choice<int> kFunctions[] = {
-        {"auto", 0}, {"harmonic", 0}, {"x", 1}, {"y", 1}, {"z", 1}, {"fiedler", 1}};
-    int function = 0;
-    read_choice(reader, "function", function, kFunctions);
-    if (function != 0) {
-        refuse_unsupported(reader.path_of("function"), "a function for the pants decomposition");
-    }
-}
-
-void read_foliation(ObjectReader& reader, fab::FoliationParams& foliation) {
-    read_choice(reader, "mode", foliation.mode, kModes);
-    read_choice(reader, "torus_rings", foliation.torus_rings, kTorusRings);
-    read_corners(reader, foliation);
-    refuse_later_modes(reader, foliation);
-    read_weights(reader);
-    read_later_lists(reader);
-    read_punctures(reader);
-    read_singularities(reader);
 }
 
 geometry::RowsCols read_rows_cols(ObjectReader& reader) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "fab/job_params.h"
 #include "server/json_reader.h"
@@ -23,6 +24,25 @@ inline constexpr ObjectReader::Choice<geometry::FoliationMode> kModes[] = {
 inline constexpr ObjectReader::Choice<geometry::TorusRings> kTorusRings[] = {
     {"short", geometry::TorusRings::Short},
     {"long", geometry::TorusRings::Long},
+};
+inline constexpr ObjectReader::Choice<geometry::PantsSource> kPantsSources[] = {
+    {"reeb", geometry::PantsSource::Reeb},
+    {"handle-loops", geometry::PantsSource::HandleLoops},
+    {"tunnel-loops", geometry::PantsSource::TunnelLoops},
+    {"user", geometry::PantsSource::User},
+};
+inline constexpr ObjectReader::Choice<geometry::SweepFunction> kSweepFunctions[] = {
+    {"auto", geometry::SweepFunction::Auto}, {"harmonic", geometry::SweepFunction::Harmonic},
+    {"x", geometry::SweepFunction::X},       {"y", geometry::SweepFunction::Y},
+    {"z", geometry::SweepFunction::Z},       {"fiedler", geometry::SweepFunction::Fiedler},
+};
+inline constexpr ObjectReader::Choice<geometry::PunctureChoice> kPunctureChoices[] = {
+    {"auto", geometry::PunctureChoice::Auto},
+    {"none", geometry::PunctureChoice::None},
+};
+inline constexpr ObjectReader::Choice<geometry::Components> kComponents[] = {
+    {"each", geometry::Components::Each},
+    {"largest", geometry::Components::Largest},
 };
 inline constexpr ObjectReader::Choice<geometry::Spacing> kSpacings[] = {
     {"uniform", geometry::Spacing::Uniform},
@@ -70,6 +90,14 @@ inline constexpr ObjectReader::Choice<fab::Dialect> kDialects[] = {
     {"marlin", fab::Dialect::Marlin},
     {"smoothie", fab::Dialect::Smoothie},
 };
+
+template <typename Value, std::size_t kNames>
+void read_choice(ObjectReader& reader,
+                 std::string_view key,
+                 Value& target,
+                 const ObjectReader::Choice<Value> (&names)[kNames]) {
+    reader.choice<Value>(key, target, names);
+}
 
 template <typename Value, std::size_t kNames>
 std::string name_of(const ObjectReader::Choice<Value> (&names)[kNames], Value value) {

@@ -1,3 +1,5 @@
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "server/params.h"
@@ -36,11 +38,45 @@ json grid_to_json(const geometry::GridOptions& grid) {
     return result;
 }
 
+json loops_to_json(const std::vector<fab::LoopParams>& loops) {
+    json result = json::array();
+    for (const fab::LoopParams& loop : loops) {
+        result.push_back(loop.number ? json(*loop.number) : json(loop.vertices));
+    }
+    return result;
+}
+
+json punctures_to_json(const fab::FoliationParams& foliation) {
+    if (foliation.puncture != geometry::PunctureChoice::Given) {
+        return name_of(kPunctureChoices, foliation.puncture);
+    }
+    json result = json::array();
+    for (const fab::PunctureParams& puncture : foliation.punctures) {
+        result.push_back({{"vertex", puncture.vertex}, {"radius_mm", puncture.radius_mm}});
+    }
+    return result;
+}
+
 json foliation_to_json(const fab::FoliationParams& foliation) {
     json result = {{"mode", name_of(kModes, foliation.mode)},
-                   {"torus_rings", name_of(kTorusRings, foliation.torus_rings)}};
+                   {"torus_rings", name_of(kTorusRings, foliation.torus_rings)},
+                   {"pants", name_of(kPantsSources, foliation.pants)},
+                   {"loops", foliation.loops},
+                   {"function", name_of(kSweepFunctions, foliation.function)},
+                   {"sources", loops_to_json(foliation.sources)},
+                   {"sinks", loops_to_json(foliation.sinks)},
+                   {"punctures", punctures_to_json(foliation)},
+                   {"singularities", json::array()},
+                   {"components", name_of(kComponents, foliation.components)}};
+    result["weights"] = foliation.weights ? json(*foliation.weights) : json("auto");
+    for (const int vertex : foliation.near) {
+        result["singularities"].push_back({{"near", vertex}});
+    }
     if (foliation.corners) {
         result["corners"] = *foliation.corners;
+    }
+    if (foliation.poles) {
+        result["poles"] = *foliation.poles;
     }
     return result;
 }

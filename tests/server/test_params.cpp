@@ -35,7 +35,8 @@ TEST(Params, TakeEveryKeyOfTheDocumentation) {
         "scale": {"units": "mm"},
         "foliation": {"mode": "disk", "pants": "reeb", "loops": [], "weights": "auto",
                       "corners": [3, 1, 4, 15], "function": "auto", "sources": [], "sinks": [],
-                      "punctures": "auto", "singularities": [], "torus_rings": "long"},
+                      "punctures": "auto", "singularities": [], "torus_rings": "short",
+                      "components": "each"},
         "grid": {"strip_width_mm": 5, "rows": 7, "cols": 8, "cylinders": [{"rows": 3}, {"cols": 4}],
                  "spacing": "uniform", "junctions": "independent", "parity": "any",
                  "planar": "off", "even_cells": false},
@@ -49,7 +50,6 @@ TEST(Params, TakeEveryKeyOfTheDocumentation) {
     EXPECT_FALSE(params.scale.longest_side_mm);
     EXPECT_EQ(params.foliation.mode, geometry::FoliationMode::Disk);
     EXPECT_EQ(params.foliation.corners, (std::array<int, 4>{3, 1, 4, 15}));
-    EXPECT_EQ(params.foliation.torus_rings, geometry::TorusRings::Long);
     EXPECT_EQ(params.grid.all.rows, 7);
     EXPECT_EQ(params.grid.per_cylinder.at(1).cols, 4);
     EXPECT_EQ(params.grid.junctions, geometry::Junctions::Independent);
@@ -110,15 +110,132 @@ TEST(Params, RefuseImpossibleValuesByFullPath) {
     EXPECT_THAT(refusal(R"({"nesting": {"seed": 99999999999}})"), StartsWith("nesting.seed:"));
 }
 
+TEST(Params, TakeAWholePantsSection) {
+    const fab::FoliationParams foliation =
+        params_from_json(parse_params_text(R"({"foliation": {"mode": "pants", "pants": "user",
+            "loops": [[1, 2, 3], [9, 8, 7, 6]], "weights": [1, 2.5], "function": "fiedler",
+            "punctures": [{"vertex": 5, "radius_mm": 2.5}], "components": "largest"}})"))
+            .foliation;
+    EXPECT_EQ(foliation.mode, geometry::FoliationMode::Pants);
+    EXPECT_EQ(foliation.pants, geometry::PantsSource::User);
+    EXPECT_EQ(foliation.loops, (std::vector<std::vector<int>>{{1, 2, 3}, {9, 8, 7, 6}}));
+    EXPECT_EQ(foliation.weights, (std::vector<double>{1.0, 2.5}));
+    EXPECT_EQ(foliation.function, geometry::SweepFunction::Fiedler);
+    EXPECT_EQ(foliation.puncture, geometry::PunctureChoice::Given);
+    ASSERT_EQ(foliation.punctures.size(), 1U);
+    EXPECT_EQ(foliation.punctures[0].vertex, 5);
+    EXPECT_EQ(foliation.punctures[0].radius_mm, 2.5);
+    EXPECT_EQ(foliation.components, geometry::Components::Largest);
+}
+
+TEST(Params, TakeLoopsByNumberOrByTheirVertices) {
+    const fab::FoliationParams foliation =
+        params_from_json(parse_params_text(R"({"foliation": {"mode": "one-form",
+            "sources": [0], "sinks": [[12, 13], 2]}})"))
+            .foliation;
+    ASSERT_EQ(foliation.sources.size(), 1U);
+    EXPECT_EQ(foliation.sources[0].number, 0);
+    ASSERT_EQ(foliation.sinks.size(), 2U);
+    EXPECT_FALSE(foliation.sinks[0].number);
+    EXPECT_EQ(foliation.sinks[0].vertices, (std::vector<int>{12, 13}));
+    EXPECT_EQ(foliation.sinks[1].number, 2);
+}
+
+TEST(Params, OpenNoHolesForAnEmptyList) {
+    const auto choice = [](const char* text) {
+        return params_from_json(parse_params_text(text)).foliation.puncture;
+    };
+    EXPECT_EQ(choice(R"({"foliation": {"punctures": []}})"), geometry::PunctureChoice::None);
+    EXPECT_EQ(choice(R"({"foliation": {"punctures": "none"}})"), geometry::PunctureChoice::None);
+    EXPECT_EQ(choice("{}"), geometry::PunctureChoice::Auto);
+}
+
+TEST(Params, ComeBackFromTheirJsonInEveryMode) {
+    for (const char* text :
+         {R"({"mode": "pants", "pants": "user", "loops": [[1, 2, 3]], "weights": [0.5, 2]})",
+          R"({"pants": "tunnel-loops", "function": "x", "components": "largest"})",
+          R"({"mode": "one-form", "sources": [0, [4, 5]], "sinks": [1]})",
+          R"({"mode": "sphere-polar", "poles": [3, 4], "punctures": "none"})",
+          R"({"punctures": [{"vertex": 7, "radius_mm": 1.25}]})",
+          R"({"mode": "sphere-pillowcase",
+              "singularities": [{"near": 1}, {"near": 2}, {"near": 3}, {"near": 4}]})",
+          R"({"mode": "torus", "torus_rings": "long"})"}) {
+        const auto given = nlohmann::json::parse(text);
+        const auto whole = params_to_json(params_from_json({{"foliation", given}}));
+        for (const auto& [key, value] : given.items()) {
+            EXPECT_EQ(whole["foliation"][key], value) << text << " " << key;
+        }
+        EXPECT_EQ(params_to_json(params_from_json(whole)), whole) << text;
+    }
+}
+
+TEST(Params, RefuseWrongFoliationValuesByFullPath) {
+    const auto refused = [](const std::string& section) {
+        return refusal(R"({"foliation": {)" + section + "}}");
+    };
+    EXPECT_THAT(refused(R"("mode": "cube")"), StartsWith("foliation.mode: must be one of auto, "));
+    EXPECT_EQ(refused(R"("weights": [1, 0])"), "foliation.weights[1]: must be > 0");
+    EXPECT_EQ(refused(R"("weights": [1, "2"])"), "foliation.weights[1]: must be a number");
+    EXPECT_THAT(refused(R"("weights": [])"), StartsWith("foliation.weights: "));
+    EXPECT_THAT(refused(R"("weights": 3)"), StartsWith("foliation.weights: must be auto or a "));
+    EXPECT_THAT(refused(R"("pants": "user", "loops": [[1, 2, 3], [4, 4, 5]])"),
+                StartsWith("foliation.loops[1]: must be three or more different vertices"));
+    EXPECT_EQ(refused(R"("pants": "user", "loops": [[1, 2, -3]])"),
+              "foliation.loops[0][2]: must be >= 0");
+    EXPECT_THAT(refused(R"("mode": "one-form", "sources": ["wrist"])"),
+                StartsWith("foliation.sources[0]: must be the number of a boundary loop or"));
+    EXPECT_EQ(refused(R"("mode": "one-form", "sinks": [0, [1, 2.5]])"),
+              "foliation.sinks[1][1]: must be a whole number");
+    EXPECT_EQ(refused(R"("mode": "one-form", "sources": [1], "sinks": [0, 1])"),
+              "foliation.sinks[1]: loop 1 is named already");
+    EXPECT_EQ(refused(R"("punctures": [{"vertex": 1}])"),
+              "foliation.punctures[0].radius_mm: must be given");
+    EXPECT_EQ(refused(R"("punctures": [{"vertex": 1, "radius_mm": 0}])"),
+              "foliation.punctures[0].radius_mm: must be > 0");
+    EXPECT_EQ(refused(R"("punctures": [{"vertex": 1, "radius_mm": 1, "depth": 2}])"),
+              "foliation.punctures[0].depth: unknown key");
+    EXPECT_THAT(refused(R"("punctures": [{"vertex": 1, "radius_mm": 1},
+                                         {"vertex": 1, "radius_mm": 2}])"),
+                StartsWith("foliation.punctures[1].vertex: "));
+    EXPECT_EQ(refused(R"("punctures": "some")"), "foliation.punctures: must be one of auto, none");
+    EXPECT_EQ(refused(R"("mode": "sphere-polar", "poles": [1, 1])"),
+              "foliation.poles: must be two different vertices");
+    EXPECT_THAT(refused(R"("mode": "sphere-pillowcase", "singularities": [{"near": 1}])"),
+                StartsWith("foliation.singularities: must be near four different vertices"));
+    EXPECT_EQ(refused(R"("mode": "sphere-pillowcase", "singularities": [{}])"),
+              "foliation.singularities[0].near: must be given");
+}
+
+TEST(Params, RefuseWhatCanMeanNothingTogether) {
+    const auto refused = [](const std::string& section) {
+        return refusal(R"({"foliation": {)" + section + "}}");
+    };
+    EXPECT_EQ(refused(R"("pants": "user")"),
+              "foliation.loops: must be given with foliation.pants \"user\"");
+    EXPECT_THAT(refused(R"("loops": [[1, 2, 3]])"), HasSubstr("set foliation.pants to \"user\""));
+    EXPECT_EQ(refused(R"("poles": [1, 2])"),
+              "foliation.poles: foliation.mode \"auto\" doesn't use it; set foliation.mode to "
+              "\"sphere-polar\"");
+    const std::string four = R"("singularities": [{"near": 1}, {"near": 2}, {"near": 3},
+                                                  {"near": 4}])";
+    EXPECT_THAT(refused(four), HasSubstr("set foliation.mode to \"sphere-pillowcase\""));
+    EXPECT_THAT(refused(R"("mode": "pants", "sources": [0])"), StartsWith("foliation.sources: "));
+    EXPECT_THAT(refused(R"("sinks": [0])"), HasSubstr("\"one-form\""));
+    EXPECT_THAT(refused(R"("mode": "disk", "pants": "tunnel-loops")"),
+                StartsWith("foliation.pants: "));
+    EXPECT_THAT(refused(R"("mode": "torus", "function": "z")"), StartsWith("foliation.function: "));
+    EXPECT_THAT(refused(R"("mode": "annulus", "weights": [1])"), StartsWith("foliation.weights: "));
+    EXPECT_THAT(refused(R"("mode": "pants", "corners": [1, 2, 3, 4])"),
+                StartsWith("foliation.corners: "));
+    EXPECT_THAT(refused(R"("mode": "pants", "torus_rings": "long")"),
+                StartsWith("foliation.torus_rings: "));
+    EXPECT_THAT(refused(R"("mode": "torus", "punctures": [{"vertex": 1, "radius_mm": 1}])"),
+                StartsWith("foliation.punctures: "));
+}
+
 TEST(Params, SayWhatIsNotComputedYet) {
     for (const char* text :
-         {R"({"foliation": {"mode": "one-form"}})", R"({"foliation": {"mode": "sphere-polar"}})",
-          R"({"foliation": {"pants": "user"}})", R"({"foliation": {"weights": [1, 2]}})",
-          R"({"foliation": {"loops": [[1, 2, 3]]}})", R"({"foliation": {"poles": [1, 2]}})",
-          R"({"foliation": {"punctures": [{"vertex": 1, "radius_mm": 2}]}})",
-          R"({"foliation": {"singularities": [{"near": 3}]}})",
-          R"({"foliation": {"function": "fiedler"}})", R"({"grid": {"planar": "full"}})",
-          R"({"grid": {"even_cells": true}})"}) {
+         {R"({"grid": {"planar": "full"}})", R"({"grid": {"even_cells": true}})"}) {
         EXPECT_THAT(refusal(text, ErrorKind::NotSupported), HasSubstr(": not supported yet: "))
             << text;
     }
