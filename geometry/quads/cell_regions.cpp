@@ -161,12 +161,4 @@ CellRegions cut_regions(const Cylinder& chart, const ChartGrid& grid) {
     return regions;
 }
 
-double surface_area(const TriangleMesh& mesh) {
-    double sum = 0.0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        sum += vector_area(mesh, t).norm();
-    }
-    return sum;
-}
-
 }  // namespace leafcutter::geometry

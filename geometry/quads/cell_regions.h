@@ -19,6 +19,4 @@ struct CellRegions {
 // Clips the triangles of the chart in (g, f) against the grid. O(triangles + pieces).
 CellRegions cut_regions(const Cylinder& chart, const ChartGrid& grid);
 
-double surface_area(const TriangleMesh& mesh);
-
 }  // namespace leafcutter::geometry

@@ -17,6 +17,7 @@
 #include "geometry/quads/half_sag.h"
 #include "geometry/quads/quad_edges.h"
 #include "geometry/quads/quality.h"
+#include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
 
