@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -75,6 +77,33 @@ double dirichlet_energy(std::span<const WeightedEdge> edges,
         sum += edges[e].weight * rise * rise;
     }
     return 0.5 * sum;
+}
+
+double flux_variation(std::span<const WeightedEdge> edges, const Eigen::VectorXd& values) {
+    // The flux through the level c is the sum of w (high - low) over edges with low < c < high.
+    std::vector<std::pair<double, double>> changes;
+    changes.reserve(2 * edges.size());
+    for (const WeightedEdge& edge : edges) {
+        const double a = values[edge.from];
+        const double b = values[edge.to];
+        if (a != b) {
+            const double flux = edge.weight * std::abs(b - a);
+            changes.emplace_back(std::min(a, b), flux);
+            changes.emplace_back(std::max(a, b), -flux);
+        }
+    }
+    std::sort(changes.begin(), changes.end());
+    double flux = 0.0;
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0.0;
+    for (std::size_t i = 0; i + 1 < changes.size(); ++i) {
+        flux += changes[i].second;
+        if (changes[i + 1].first > changes[i].first) {
+            least = std::min(least, flux);
+            most = std::max(most, flux);
+        }
+    }
+    return most > 0.0 ? (most - least) / most : 0.0;
 }
 
 HarmonicSolver::HarmonicSolver(std::span<const WeightedEdge> edges, const std::vector<char>& held)

@@ -41,6 +41,10 @@ double dirichlet_energy(std::span<const WeightedEdge> edges,
                         const Eigen::VectorXd& values,
                         std::span<const double> jump = {});
 
+// Largest relative difference between the fluxes of a function through two of its level sets, those
+// through whole edges: 0 but for rounding if it is harmonic away from its extreme values.
+double flux_variation(std::span<const WeightedEdge> edges, const Eigen::VectorXd& values);
+
 // Functions that are harmonic at every vertex that isn't held. Factors once.
 class HarmonicSolver {
 public:

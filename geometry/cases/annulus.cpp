@@ -102,6 +102,7 @@ SolvedChart solve_ring(const ChartSurface& surface, int origin) {
     const Conjugate conjugate = round_the_ring(edges, delaunay, origin);
     solved.upper = 2.0 * dirichlet_energy(edges, f);
     solved.lower = 1.0 / (2.0 * conjugate.energy);
+    solved.flux_mismatch = flux_variation(edges, f);
     map.shape = ChartShape::Annulus;
     map.height = 1.0;
     map.width = std::sqrt(solved.upper * solved.lower);

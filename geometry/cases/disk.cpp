@@ -86,6 +86,7 @@ SolvedChart solve_rectangle(const ChartSurface& surface) {
     // closer to it.
     solved.upper = 2.0 * dirichlet_energy(edges, f);
     solved.lower = 1.0 / (2.0 * dirichlet_energy(edges, g));
+    solved.flux_mismatch = flux_variation(edges, f);
     map.shape = ChartShape::Rectangle;
     map.height = 1.0;
     map.width = std::sqrt(solved.upper * solved.lower);

@@ -50,6 +50,7 @@ Foliation finish_foliation(SolvedChart solved,
     Cylinder cylinder = finish_cylinder(std::move(solved.map));
     cylinder.energy = 0.5 * solved.upper;
     cylinder.conformal_gap = solved.gap();
+    cylinder.flux_mismatch = solved.flux_mismatch;
     Foliation foliation;
     foliation.energy = cylinder.energy;
     foliation.iterations = 1;

@@ -17,8 +17,9 @@ namespace leafcutter::geometry {
 
 struct SolvedChart {
     ChartMap map;
-    double upper = 0.0;  // Bounds of width / height: twice the energy of f for height 1,
-    double lower = 0.0;  // and one over that of its conjugate with period or range 1.
+    double upper = 0.0;          // Bounds of width / height: twice the energy of f for height 1,
+    double lower = 0.0;          // and one over that of its conjugate with period or range 1.
+    double flux_mismatch = 0.0;  // Of f, between its leaves; see flux_variation().
 
     double gap() const { return upper / lower - 1.0; }
 };

@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace leafcutter::geometry {
 namespace {
 
@@ -19,7 +21,7 @@ std::size_t at(int index) {
 }
 
 // Names of a point that a piece may hold several copies of: both sides of a cut can belong to it.
-enum class PointKind : std::uint64_t { Vertex, EdgeCut, Centre };
+enum class PointKind : std::uint64_t { EdgeCut, Centre };
 
 std::uint64_t name_of(PointKind kind, int id, int end, int side) {
     return (static_cast<std::uint64_t>(id) << 4U) | (static_cast<std::uint64_t>(kind) << 2U) |
@@ -32,22 +34,89 @@ struct Builder {
     std::vector<char> at_end;  // Per vertex: 0 inside, 1 at t = 0, 2 at t = weight.
     std::unordered_map<std::uint64_t, int> index;
 
-    int vertex(std::uint64_t name, const Eigen::Vector3d& position, int source, char end) {
+    int add(const Eigen::Vector3d& position, int source, char end) {
+        piece.mesh.positions.push_back(position);
+        piece.source_vertex.push_back(source);
+        at_end.push_back(end);
+        return static_cast<int>(piece.mesh.positions.size()) - 1;
+    }
+
+    // A point of a cut, by name.
+    int point(std::uint64_t name, const Eigen::Vector3d& position, char end) {
         const auto [found, fresh] =
             index.emplace(name, static_cast<int>(piece.mesh.positions.size()));
         if (fresh) {
-            piece.mesh.positions.push_back(position);
-            piece.source_vertex.push_back(source);
-            at_end.push_back(end);
+            add(position, -1, end);
         }
         return found->second;
     }
 };
 
+// Joins segments to curves. Points are named by numbers; those that more than two segments meet in
+// are the curves' ends.
+class CurveJoiner {
+public:
+    int point(std::uint64_t name, const Eigen::Vector3d& position) {
+        const auto [found, fresh] = index_.emplace(name, static_cast<int>(points_.size()));
+        if (fresh) {
+            points_.push_back(position);
+            neighbours_.emplace_back();
+        }
+        return found->second;
+    }
+
+    void join(int a, int b) {
+        neighbours_[at(a)].push_back(b);
+        neighbours_[at(b)].push_back(a);
+    }
+
+    std::vector<std::vector<Eigen::Vector3d>> curves() {
+        std::vector<std::vector<Eigen::Vector3d>> curves;
+        for (const bool from_ends : {true, false}) {
+            for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+                while (!neighbours_[at(p)].empty() &&
+                       (!from_ends || neighbours_[at(p)].size() != 2)) {
+                    curves.push_back(follow(p));
+                }
+            }
+        }
+        return curves;
+    }
+
+private:
+    void part(int a, int b) {
+        const auto drop = [](std::vector<int>& list, int value) {
+            list.erase(std::find(list.begin(), list.end(), value));
+        };
+        drop(neighbours_[at(a)], b);
+        drop(neighbours_[at(b)], a);
+    }
+
+    std::vector<Eigen::Vector3d> follow(int start) {
+        std::vector<Eigen::Vector3d> curve{points_[at(start)]};
+        int p = start;
+        do {
+            const int next = neighbours_[at(p)].back();
+            part(p, next);
+            p = next;
+            curve.push_back(points_[at(p)]);
+        } while (p != start && neighbours_[at(p)].size() == 1);
+        return curve;
+    }
+
+    std::unordered_map<std::uint64_t, int> index_;
+    std::vector<Eigen::Vector3d> points_;
+    std::vector<std::vector<int>> neighbours_;
+};
+
 class Slicer {
 public:
     Slicer(const TriangleMesh& mesh, const VertexRings& rings, const GraphMap& map)
-        : mesh_(mesh), rings_(rings), map_(map), builders_(map.graph.edges.size()) {}
+        : mesh_(mesh),
+          rings_(rings),
+          map_(map),
+          builders_(map.graph.edges.size()),
+          local_(mesh.positions.size(), -1) {}
 
     Sliced run() {
         for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
@@ -57,6 +126,7 @@ public:
             find_loops(builder);
             sliced_.pieces.push_back(std::move(builder.piece));
         }
+        sliced_.critical_arcs = curves_.curves();
         return std::move(sliced_);
     }
 
@@ -97,32 +167,44 @@ private:
 
     int corner(int t, int k) {
         const int v = mesh_.triangles[at(t)][at(k)];
-        char end = 0;
-        if (map_.fixed[at(v)] != 0) {
-            end = map_.t[at(v)] > 0.5 * map_.weight(map_.graph_edge[at(v)]) ? 2 : 1;
+        if (local_[at(v)] < 0) {
+            char end = 0;
+            if (map_.fixed[at(v)] != 0) {
+                end = map_.t[at(v)] > 0.5 * map_.weight(map_.graph_edge[at(v)]) ? 2 : 1;
+            }
+            local_[at(v)] = builder_of(v).add(mesh_.positions[at(v)], v, end);
         }
-        return builder_of(v).vertex(name_of(PointKind::Vertex, v, 0, 0), mesh_.positions[at(v)], v,
-                                    end);
+        return local_[at(v)];
     }
 
     double distance_to_node(int vertex, Dart dart) const { return map_.remaining(vertex, dart); }
 
-    // The cut point on side k, in the piece of the corner it is seen from.
-    int cut_point(int t, int k, bool from_start) {
-        const auto [edge, forward] = side_of(t, k);
+    Eigen::Vector3d cut_position(int edge) const {
         const MeshEdge& ends = rings_.edges[at(edge)];
         const Word& word = map_.words[at(edge)];
         const double a = distance_to_node(ends.from, word.front());
         const double b = distance_to_node(ends.to, reversed(word.back()));
         const double ratio = std::clamp(a + b > 0.0 ? a / (a + b) : 0.5, kFromEnd, 1.0 - kFromEnd);
-        const Eigen::Vector3d position =
-            (1.0 - ratio) * mesh_.positions[at(ends.from)] + ratio * mesh_.positions[at(ends.to)];
+        return (1.0 - ratio) * mesh_.positions[at(ends.from)] +
+               ratio * mesh_.positions[at(ends.to)];
+    }
+
+    int curve_point(int t, int k) {
+        const int edge = side_of(t, k).first;
+        return curves_.point(name_of(PointKind::EdgeCut, edge, 0, 0), cut_position(edge));
+    }
+
+    // The cut point on side k, in the piece of the corner it is seen from.
+    int cut_point(int t, int k, bool from_start) {
+        const auto [edge, forward] = side_of(t, k);
+        const MeshEdge& ends = rings_.edges[at(edge)];
+        const Eigen::Vector3d position = cut_position(edge);
         const bool from_edge_start = forward == from_start;
         const Dart dart = first_dart(t, k, from_start);
         const int side = runs_forward(dart) ? 1 : 0;
         const int seen_from = from_edge_start ? ends.from : ends.to;
-        return builder_of(seen_from).vertex(
-            name_of(PointKind::EdgeCut, edge, from_edge_start ? 0 : 1, side), position, -1,
+        return builder_of(seen_from).point(
+            name_of(PointKind::EdgeCut, edge, from_edge_start ? 0 : 1, side), position,
             static_cast<char>(1 + side));
     }
 
@@ -143,6 +225,7 @@ private:
         auto& tip = builder_of(mesh_.triangles[at(t)][at(a)]).piece.mesh.triangles;
         const std::array<int, 3> small{corner(t, a), cut_point(t, a, true), cut_point(t, c, false)};
         tip.push_back(small);
+        curves_.join(curve_point(t, a), curve_point(t, c));
         auto& rest = builder_of(mesh_.triangles[at(t)][at(b)]).piece;
         const int p = cut_point(t, a, false);
         const int q = cut_point(t, c, true);
@@ -179,12 +262,16 @@ private:
             centre += share[at(k)] / clamped * mesh_.positions[at(mesh_.triangles[at(t)][at(k)])];
         }
         sliced_.three_prongs.push_back(centre);
+        const int meeting = curves_.point(name_of(PointKind::Centre, t, 0, 0), centre);
+        for (int k = 0; k < 3; ++k) {
+            curves_.join(meeting, curve_point(t, k));
+        }
         for (int k = 0; k < 3; ++k) {
             const int v = mesh_.triangles[at(t)][at(k)];
             const int side = runs_forward(first_dart(t, k, true)) ? 1 : 0;
             Builder& builder = builder_of(v);
-            const int m = builder.vertex(name_of(PointKind::Centre, 3 * t + k, 0, side), centre, -1,
-                                         static_cast<char>(1 + side));
+            const int m = builder.point(name_of(PointKind::Centre, 3 * t + k, 0, side), centre,
+                                        static_cast<char>(1 + side));
             const int tip = corner(t, k);
             const int p = cut_point(t, k, true);
             const int q = cut_point(t, (k + 2) % 3, false);
@@ -194,16 +281,18 @@ private:
     }
 
     [[noreturn]] void broken(const Builder& builder, const std::string& what) const {
-        throw Error(
-            ErrorKind::SelfCheck, "broken-cylinder",
-            "slicing: cylinder " + std::to_string(&builder - builders_.data()) + " " + what);
+        throw Error(ErrorKind::SelfCheck, "broken-cylinder",
+                    fmt::format("slicing: cylinder {} {}", &builder - builders_.data(), what));
     }
 
     void find_loops(Builder& builder) {
         const auto& mesh = builder.piece.mesh;
         const int count = static_cast<int>(mesh.positions.size());
         if (mesh.triangles.empty()) {
-            broken(builder, "is empty: its edge has collapsed");
+            throw Error(ErrorKind::SelfCheck, "collapsed-edge",
+                        fmt::format("slicing: nothing of the surface is mapped to cylinder {}: its "
+                                    "edge has collapsed",
+                                    &builder - builders_.data()));
         }
         const HalfEdges half_edges = build_half_edges(mesh.triangles, count);
         std::vector<int> next(at(count), -1);
@@ -216,9 +305,8 @@ private:
         }
         const int interior = (half_edges.size() - boundary) / 2;
         if (count - interior - boundary + half_edges.size() / 3 != 0) {
-            broken(builder,
-                   "is no annulus: Euler characteristic " +
-                       std::to_string(count - interior - boundary + half_edges.size() / 3));
+            broken(builder, fmt::format("is no annulus: Euler characteristic {}",
+                                        count - interior - boundary + half_edges.size() / 3));
         }
         int loops = 0;
         for (int v = 0; v < count; ++v) {
@@ -236,7 +324,7 @@ private:
             ++loops;
         }
         if (loops != 2) {
-            broken(builder, "has " + std::to_string(loops) + " boundary loops instead of 2");
+            broken(builder, fmt::format("has {} boundary loops instead of 2", loops));
         }
     }
 
@@ -244,6 +332,8 @@ private:
     const VertexRings& rings_;
     const GraphMap& map_;
     std::vector<Builder> builders_;
+    std::vector<int> local_;  // Per vertex: its number in its piece.
+    CurveJoiner curves_;
     Sliced sliced_;
 };
 

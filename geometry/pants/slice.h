@@ -23,10 +23,13 @@ struct Piece {
 struct Sliced {
     std::vector<Piece> pieces;                  // Per graph edge.
     std::vector<Eigen::Vector3d> three_prongs;  // Where three legs meet.
+    // The critical graph: one curve from three-prong point to three-prong point each, or closed
+    // (then the last point is the first).
+    std::vector<std::vector<Eigen::Vector3d>> critical_arcs;
 };
 
 // No word of `map` is longer than 2. Throws Error(SelfCheck, "broken-cylinder") if a piece is not
-// an annulus.
+// an annulus, "collapsed-edge" if nothing is mapped to a graph edge.
 Sliced slice_surface(const TriangleMesh& mesh, const VertexRings& rings, const GraphMap& map);
 
 }  // namespace leafcutter::geometry
