@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "fab/cut_program.h"
 #include "fab/job_params.h"
 #include "fab/layout.h"
@@ -34,15 +36,24 @@ struct Certificate {
     int edges_compared = 0;
 };
 
+// A hole that the foliation opened.
+struct OpenedHole {
+    int input_vertex = -1;     // Its centre in the input file; -1 if that has no such vertex.
+    Eigen::Vector3d position;  // mm
+    double radius_mm = 0.0;    // On the surface.
+};
+
 struct JobResult {
     JobParams params;
     InputFacts input;
     geometry::RepairReport repair;
     geometry::Topology topology;
     geometry::Foliation foliation;
+    std::vector<OpenedHole> holes;
     geometry::QuadMesh quads;
     geometry::QualityReport quality;
     double surface_area_mm2 = 0.0;
+    double woven_area_mm2 = 0.0;  // Of the cylinders: without holes, poles and parts left out.
     std::vector<geometry::Leaf> leaves;
     std::vector<Strip> strips;
     std::vector<Piece> pieces;

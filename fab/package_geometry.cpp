@@ -20,6 +20,14 @@ json point_json(const Eigen::Vector3d& point) {
     return {point.x(), point.y(), point.z()};
 }
 
+json points_json(const std::vector<Eigen::Vector3d>& line) {
+    json points = json::array();
+    for (const Eigen::Vector3d& point : line) {
+        points.push_back(point_json(point));
+    }
+    return points;
+}
+
 // Lifts differ by a period from triangle to triangle; files get the one in [0, period).
 double into_period(double value, double period) {
     const double rest = std::fmod(value, period);
@@ -78,15 +86,15 @@ std::string surface_ply(const JobResult& job) {
 std::string leaves_json(const JobResult& job) {
     json leaves = json::array();
     for (const geometry::Leaf& leaf : job.leaves) {
-        json points = json::array();
-        for (const Eigen::Vector3d& point : leaf.points) {
-            points.push_back(point_json(point));
-        }
         leaves.push_back({{"family", leaf.of_conjugate ? "warp" : "weft"},
                           {"cylinder", leaf.cylinder},
                           {"level", leaf.level},
                           {"closed", leaf.closed},
-                          {"points", std::move(points)}});
+                          {"points", points_json(leaf.points)}});
+    }
+    json critical_graph = json::array();
+    for (const std::vector<Eigen::Vector3d>& line : job.foliation.critical_graph) {
+        critical_graph.push_back({{"points", points_json(line)}});
     }
     json singularities = json::array();
     for (const geometry::Singularity& singularity : job.foliation.singularities) {
@@ -95,7 +103,7 @@ std::string leaves_json(const JobResult& job) {
     }
     const json file = {{"format", "leafcutter-leaves/1"},
                        {"leaves", std::move(leaves)},
-                       {"critical_graph", json::array()},
+                       {"critical_graph", std::move(critical_graph)},
                        {"singularities", std::move(singularities)}};
     return file.dump() + "\n";
 }

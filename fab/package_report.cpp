@@ -1,5 +1,6 @@
 // report.json: what was computed and how good it is.
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -62,6 +63,8 @@ json input_json(const InputFacts& input) {
 
 json surface_json(const JobResult& job) {
     const geometry::RepairReport& repair = job.repair;
+    // Holes, poles and whole parts. What cells at the tips of limbs cut off comes on top.
+    const double left_out = 100.0 * std::max(0.0, 1.0 - job.woven_area_mm2 / job.surface_area_mm2);
     return {{"repairs",
              {{"triangulated_polygons", repair.triangulated_polygons},
               {"welded_vertices", repair.welded_vertices},
@@ -72,7 +75,8 @@ json surface_json(const JobResult& job) {
               {"split_vertices", repair.split_vertices}}},
             {"refinement", {{"vertices", job.topology.vertices}, {"faces", job.topology.faces}}},
             {"area_mm2", job.surface_area_mm2},
-            {"removed_area_percent", job.quality.removed_area_percent}};
+            {"removed_area_percent", job.quality.removed_area_percent + left_out},
+            {"left_out_area_percent", left_out}};
 }
 
 json topology_json(const geometry::Topology& topology) {
@@ -94,15 +98,56 @@ json cylinder_json(const geometry::Cylinder& cylinder, const geometry::CylinderG
             {"column_shift", grid.column_shift},
             {"shear_deg", grid.shear_deg},
             {"energy", cylinder.energy},
-            {"conformal_gap", cylinder.conformal_gap}};
+            {"conformal_gap", cylinder.conformal_gap},
+            {"flux_mismatch", cylinder.flux_mismatch}};
+}
+
+json point_json(const Eigen::Vector3d& point) {
+    return {point.x(), point.y(), point.z()};
+}
+
+json graph_json(const geometry::MetricGraph& graph) {
+    json edges = json::array();
+    for (const auto& edge : graph.edges) {
+        edges.push_back({{"from", edge.from}, {"to", edge.to}, {"weight", edge.weight}});
+    }
+    return {{"nodes", graph.nodes}, {"edges", std::move(edges)}};
+}
+
+json holes_json(const std::vector<OpenedHole>& holes) {
+    json result = json::array();
+    for (const OpenedHole& hole : holes) {
+        json entry = {{"vertex", nullptr},
+                      {"position", point_json(hole.position)},
+                      {"radius_mm", hole.radius_mm}};
+        if (hole.input_vertex >= 0) {
+            entry["vertex"] = hole.input_vertex;
+        }
+        result.push_back(std::move(entry));
+    }
+    return result;
+}
+
+json spread_json(const geometry::CellSpread& spread) {
+    return {{"variation", spread.variation}, {"largest_edge", spread.largest}};
+}
+
+json alternatives_json(const JobResult& job) {
+    json result = json::array();
+    for (const geometry::Alternative& alternative : job.foliation.alternatives) {
+        result.push_back(
+            {{"name", alternative.name},
+             {"cell_spread", spread_json(alternative.spread)},
+             {"removed_area_percent", 100.0 * alternative.removed_area / job.surface_area_mm2},
+             {"chosen", alternative.chosen}});
+    }
+    return result;
 }
 
 json foliation_json(const JobResult& job) {
     const geometry::Foliation& foliation = job.foliation;
-    json edges = json::array();
     json weights = json::array();
     for (const auto& edge : foliation.graph.edges) {
-        edges.push_back({{"from", edge.from}, {"to", edge.to}, {"weight", edge.weight}});
         weights.push_back(edge.weight);
     }
     json cylinders = json::array();
@@ -111,16 +156,14 @@ json foliation_json(const JobResult& job) {
     }
     json singularities = json::array();
     for (const auto& [position, prongs] : foliation.singularities) {
-        singularities.push_back(
-            {{"position", {position.x(), position.y(), position.z()}}, {"prongs", prongs}});
+        singularities.push_back({{"position", point_json(position)}, {"prongs", prongs}});
     }
-    return {{"mode", name_of(foliation.mode)},
-            {"graph", {{"nodes", foliation.graph.nodes}, {"edges", std::move(edges)}}},
-            {"weights", std::move(weights)},
-            {"energy", foliation.energy},
-            {"iterations", foliation.iterations},
-            {"singularities", std::move(singularities)},
-            {"cylinders", std::move(cylinders)}};
+    return {
+        {"mode", name_of(foliation.mode)},        {"graph", graph_json(foliation.graph)},
+        {"weights", std::move(weights)},          {"energy", foliation.energy},
+        {"iterations", foliation.iterations},     {"singularities", std::move(singularities)},
+        {"punctures", holes_json(job.holes)},     {"cell_spread", spread_json(foliation.spread)},
+        {"alternatives", alternatives_json(job)}, {"cylinders", std::move(cylinders)}};
 }
 
 json max_avg(const geometry::MaxAvg& value) {

@@ -4,11 +4,13 @@
 #include <array>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "fab/certificate.h"
 #include "fab/export/formats.h"
 #include "fab/family_nest.h"
+#include "fab/foliation_options.h"
 #include "fab/job_result.h"
 #include "fab/package_files.h"
 #include "fab/strips.h"
@@ -65,6 +67,20 @@ const Material& material_named(std::span<const Material> materials,
                fmt::format("{}: there is no material {}", path, valid_utf8(id)));
     }
     return *material;
+}
+
+// Of the surface that the cylinders cover: without holes, poles and parts left out.
+double woven_area(const geometry::Foliation& foliation) {
+    double area = 0.0;
+    for (const geometry::Cylinder& cylinder : foliation.cylinders) {
+        for (const auto& [a, b, c] : cylinder.mesh.triangles) {
+            const auto at = [&](int vertex) -> const Eigen::Vector3d& {
+                return cylinder.mesh.positions[static_cast<std::size_t>(vertex)];
+            };
+            area += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
+        }
+    }
+    return area;
 }
 
 // Runs the stages one after the other over one JobResult, timing each.
@@ -152,39 +168,30 @@ private:
         }
     }
 
-    geometry::FoliationOptions foliation_options() const {
-        const FoliationParams& wanted = result_.params.foliation;
-        geometry::FoliationOptions options;
-        options.mode = wanted.mode;
-        options.torus_rings = wanted.torus_rings;
-        if (wanted.corners) {
-            options.corners.emplace();
-            for (std::size_t i = 0; i < 4; ++i) {
-                (*options.corners)[i] = mesh_vertex((*wanted.corners)[i], i);
-            }
-        }
-        return options;
-    }
-
-    int mesh_vertex(int input_vertex, std::size_t corner) const {
-        const auto at = static_cast<std::size_t>(input_vertex);
-        if (input_vertex < 0 || at >= vertex_of_input_.size()) {
-            refuse("no-such-vertex",
-                   fmt::format("foliation.corners[{}]: the model has no vertex {}; it has {}",
-                               corner, input_vertex, vertex_of_input_.size()));
-        }
-        if (vertex_of_input_[at] < 0) {
-            refuse("no-such-vertex",
-                   fmt::format("foliation.corners[{}]: vertex {} belongs to no face that was kept",
-                               corner, input_vertex));
-        }
-        return vertex_of_input_[at];
-    }
-
     void foliate(const Context& context) {
-        result_.foliation = geometry::compute_foliation(mesh_, foliation_options(), context);
+        const geometry::FoliationOptions options =
+            foliation_options(result_.params.foliation, {vertex_of_input_, result_.topology});
+        result_.foliation = geometry::compute_foliation(mesh_, options, context);
         warnings_.insert(warnings_.end(), result_.foliation.warnings.begin(),
                          result_.foliation.warnings.end());
+        find_places();
+    }
+
+    // What users call the vertices that the foliation names.
+    void find_places() {
+        std::vector<int> input_of_vertex(mesh_.n_vertices(), -1);
+        for (std::size_t i = vertex_of_input_.size(); i-- > 0;) {
+            if (vertex_of_input_[i] >= 0) {
+                input_of_vertex[static_cast<std::size_t>(vertex_of_input_[i])] =
+                    static_cast<int>(i);
+            }
+        }
+        for (const geometry::Puncture& puncture : result_.foliation.punctures) {
+            result_.holes.push_back(
+                {.input_vertex = input_of_vertex[static_cast<std::size_t>(puncture.vertex)],
+                 .position = mesh_.point(geometry::Mesh::VertexHandle(puncture.vertex)),
+                 .radius_mm = puncture.radius});
+        }
     }
 
     void make_quads(const Context& context) {
@@ -199,6 +206,7 @@ private:
         result_.quads = geometry::build_quad_mesh(result_.foliation, grid, context);
         const geometry::ClosestPoint surface(geometry::to_triangle_mesh(mesh_));
         result_.surface_area_mm2 = surface.total_area();
+        result_.woven_area_mm2 = woven_area(result_.foliation);
         result_.quality = geometry::measure_quality(result_.quads, surface, context);
         int stride = 1;
         while (result_.quads.quads.size() / static_cast<std::size_t>(stride) > kMostLeafCells) {

@@ -1,0 +1,23 @@
+// From the parameters of a job to the options of a foliation: vertex numbers of the input file
+// become those of the repaired mesh, boundary loops are looked up.
+
+#pragma once
+
+#include <span>
+
+#include "fab/job_params.h"
+#include "geometry/foliation.h"
+#include "geometry/topology.h"
+
+namespace leafcutter::fab {
+
+// What the numbers of a user stand for.
+struct NamedMesh {
+    std::span<const int> vertex_of_input;  // Per vertex of the file: vertex of the mesh, or -1.
+    const geometry::Topology& topology;
+};
+
+// Throws geometry::Error(BadOption, "no-such-vertex" or "no-such-loop"), naming the parameter.
+geometry::FoliationOptions foliation_options(const FoliationParams& params, const NamedMesh& mesh);
+
+}  // namespace leafcutter::fab
