@@ -153,4 +153,14 @@ geometry::FoliationOptions foliation_options(const FoliationParams& params, cons
     return Translator(params, mesh).translate();
 }
 
+std::vector<int> input_of_vertices(std::span<const int> vertex_of_input, std::size_t vertices) {
+    std::vector<int> result(vertices, -1);
+    for (std::size_t i = vertex_of_input.size(); i-- > 0;) {
+        if (vertex_of_input[i] >= 0) {
+            result[static_cast<std::size_t>(vertex_of_input[i])] = static_cast<int>(i);
+        }
+    }
+    return result;
+}
+
 }  // namespace leafcutter::fab

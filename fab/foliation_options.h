@@ -3,7 +3,9 @@
 
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "fab/job_params.h"
 #include "geometry/foliation.h"
@@ -19,5 +21,8 @@ struct NamedMesh {
 
 // Throws geometry::Error(BadOption, "no-such-vertex" or "no-such-loop"), naming the parameter.
 geometry::FoliationOptions foliation_options(const FoliationParams& params, const NamedMesh& mesh);
+
+// The other way: per vertex of the mesh its first number in the file, or -1 where it has none.
+std::vector<int> input_of_vertices(std::span<const int> vertex_of_input, std::size_t vertices);
 
 }  // namespace leafcutter::fab

@@ -12,6 +12,7 @@
 #include "fab/job_params.h"
 #include "fab/layout.h"
 #include "fab/material.h"
+#include "fab/parts.h"
 #include "fab/strip.h"
 #include "fab/weave.h"
 #include "geometry/foliation.h"
@@ -48,6 +49,7 @@ struct JobResult {
     InputFacts input;
     geometry::RepairReport repair;
     geometry::Topology topology;
+    std::vector<Part> parts;  // One for each component.
     geometry::Foliation foliation;
     std::vector<OpenedHole> holes;
     geometry::QuadMesh quads;

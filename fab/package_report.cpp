@@ -79,11 +79,22 @@ json surface_json(const JobResult& job) {
             {"left_out_area_percent", left_out}};
 }
 
-json topology_json(const geometry::Topology& topology) {
+json topology_json(const JobResult& job) {
+    const geometry::Topology& topology = job.topology;
+    json parts = json::array();
+    for (const Part& part : job.parts) {
+        parts.push_back({{"faces", part.faces},
+                         {"genus", part.genus},
+                         {"boundary_loops", part.boundary_loops.size()},
+                         {"euler", part.euler},
+                         {"area_mm2", part.area},
+                         {"cylinders", part.cylinders}});
+    }
     return {{"components", topology.components},
             {"genus", topology.genus},
             {"boundary_loops", topology.boundary_loops.size()},
-            {"euler", topology.euler}};
+            {"euler", topology.euler},
+            {"parts", std::move(parts)}};
 }
 
 json cylinder_json(const geometry::Cylinder& cylinder, const geometry::CylinderGrid& grid) {
@@ -280,7 +291,7 @@ std::string report_json(const JobResult& job) {
     const json file = {{"format", "leafcutter-report/1"},
                        {"input", input_json(job.input)},
                        {"surface", surface_json(job)},
-                       {"topology", topology_json(job.topology)},
+                       {"topology", topology_json(job)},
                        {"foliation", foliation_json(job)},
                        {"quality", qualities_json(job.quality)},
                        {"strips", strips_summary_json(job)},

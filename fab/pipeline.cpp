@@ -149,6 +149,7 @@ private:
         vertex_of_input_ = std::move(repaired.vertex_of_input);
         scale();
         result_.topology = geometry::analyse_topology(mesh_);
+        result_.parts = parts_of(mesh_, result_.topology);
     }
 
     void scale() {
@@ -174,18 +175,14 @@ private:
         result_.foliation = geometry::compute_foliation(mesh_, options, context);
         warnings_.insert(warnings_.end(), result_.foliation.warnings.begin(),
                          result_.foliation.warnings.end());
+        assign_cylinders(mesh_, result_.topology, result_.foliation.cylinders, result_.parts);
         find_places();
     }
 
     // What users call the vertices that the foliation names.
     void find_places() {
-        std::vector<int> input_of_vertex(mesh_.n_vertices(), -1);
-        for (std::size_t i = vertex_of_input_.size(); i-- > 0;) {
-            if (vertex_of_input_[i] >= 0) {
-                input_of_vertex[static_cast<std::size_t>(vertex_of_input_[i])] =
-                    static_cast<int>(i);
-            }
-        }
+        const std::vector<int> input_of_vertex =
+            input_of_vertices(vertex_of_input_, mesh_.n_vertices());
         for (const geometry::Puncture& puncture : result_.foliation.punctures) {
             result_.holes.push_back(
                 {.input_vertex = input_of_vertex[static_cast<std::size_t>(puncture.vertex)],

@@ -9,6 +9,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "fab/foliation_options.h"
+#include "fab/parts.h"
 #include "geometry/error.h"
 #include "geometry/io/read_mesh.h"
 #include "geometry/repair.h"
@@ -42,6 +44,53 @@ Json bounding_box_json(const geometry::Mesh& mesh) {
     return {{"min", {low.x(), low.y(), low.z()}}, {"max", {high.x(), high.y(), high.z()}}};
 }
 
+// Null where all vertices of the loop are copies that the repair made.
+Json first_known(const std::vector<int>& loop, const std::vector<int>& input_of_vertex) {
+    for (const int vertex : loop) {
+        const int known = input_of_vertex[static_cast<std::size_t>(vertex)];
+        if (known >= 0) {
+            return known;
+        }
+    }
+    return nullptr;
+}
+
+// By their numbers, with which parameters name them. Vertices are numbered as in the file, lengths
+// are in its unit.
+Json boundaries_json(const geometry::RepairedMesh& repaired, const geometry::Topology& topology) {
+    const std::vector<int> input_of_vertex =
+        fab::input_of_vertices(repaired.vertex_of_input, repaired.mesh.n_vertices());
+    Json result = Json::array();
+    for (std::size_t i = 0; i < topology.boundary_loops.size(); ++i) {
+        const std::vector<int>& loop = topology.boundary_loops[i];
+        double length = 0.0;
+        for (std::size_t j = 0; j < loop.size(); ++j) {
+            const auto point = [&](int vertex) {
+                return repaired.mesh.point(geometry::Mesh::VertexHandle(vertex));
+            };
+            length += (point(loop[(j + 1) % loop.size()]) - point(loop[j])).norm();
+        }
+        result.push_back({{"number", i},
+                          {"vertices", loop.size()},
+                          {"length", length},
+                          {"vertex", first_known(loop, input_of_vertex)}});
+    }
+    return result;
+}
+
+Json parts_json(const geometry::Mesh& mesh, const geometry::Topology& topology) {
+    Json result = Json::array();
+    for (const fab::Part& part : fab::parts_of(mesh, topology)) {
+        result.push_back({{"vertices", part.vertices},
+                          {"faces", part.faces},
+                          {"genus", part.genus},
+                          {"boundary_loops", part.boundary_loops},
+                          {"euler", part.euler},
+                          {"area", part.area}});
+    }
+    return result;
+}
+
 // Errors say which file they are about.
 geometry::RepairedMesh load(const std::vector<std::byte>& bytes,
                             const std::string& path,
@@ -67,6 +116,8 @@ Json inspect(const std::string& path) {
             {"genus", topology.genus},
             {"boundary_loops", topology.boundary_loops.size()},
             {"euler", topology.euler},
+            {"boundaries", boundaries_json(repaired, topology)},
+            {"parts", parts_json(repaired.mesh, topology)},
             {"orientable", true},
             {"repairs", repairs_json(repaired.report)},
             {"fatal", Json::array()},

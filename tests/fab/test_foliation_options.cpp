@@ -116,5 +116,9 @@ TEST(FoliationOptions, RefuseVerticesOfSeveralLoopsOrNone) {
     EXPECT_THAT(refusal(params), HasSubstr("vertex 7 lies on no boundary loop"));
 }
 
+TEST(InputOfVertices, TakesTheFirstOfSeveralNumbers) {
+    EXPECT_EQ(input_of_vertices(kVertexOfInput, 7), (std::vector<int>{1, 3, 4, 5, 6, 7, -1}));
+}
+
 }  // namespace
 }  // namespace leafcutter::fab
