@@ -40,8 +40,8 @@ std::vector<SweepFunction> functions_of(SweepFunction function) {
 GraphMap reeb_map(const DecompositionSurface& surface, SweepFunction function, int attempt) {
     const SweepValues sweep = sweep_values(surface, function, attempt);
     const ReebGraph reeb = build_reeb_graph(surface.triangles, sweep.values, surface.boundary_loops,
-                                            sweep.loop_is_low);
-    return initial_map(reeb, sweep.values, surface.rings, surface.boundary_loops);
+                                            sweep.loop_is_low, attempt);
+    return initial_map(reeb, surface.rings, surface.boundary_loops);
 }
 
 }  // namespace

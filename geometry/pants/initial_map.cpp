@@ -2,7 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/disjoint_sets.h"
+#include "geometry/pants/draw_onto.h"
 
 namespace leafcutter::geometry {
 namespace {
@@ -21,8 +28,7 @@ struct Spot {
 
 class PantsGraph {
 public:
-    PantsGraph(const ReebGraph& reeb, std::span<const double> values)
-        : reeb_(reeb), values_(values), arcs_at_(reeb.node_vertex.size()) {
+    explicit PantsGraph(const ReebGraph& reeb) : reeb_(reeb), arcs_at_(reeb.node_vertex.size()) {
         prune();
         name_graph_nodes();
         join_chains();
@@ -56,16 +62,34 @@ public:
     Spot spot_of_vertex(int v) const {
         const int node = reeb_.node_of_vertex[at(v)];
         if (node >= 0) {
-            return spot_of_node(node);
+            const Spot spot = spot_of_node(node);
+            const int owner = reeb_.mesh.owner[at(v)];
+            return spot.node >= 0 && owner >= 0 && owner != v ? seen_towards(owner, v, spot) : spot;
         }
         const int arc = reeb_.arc_of_vertex[at(v)];
         if (!is_core(arc)) {
             return spot_of_node(reeb_.arcs[at(arc)].low);
         }
-        return spot_on_arc(arc, values_[at(v)] - reeb_.arcs[at(arc)].low_value);
+        return spot_on_arc(arc, reeb_.mesh.value[at(v)] - reeb_.arcs[at(arc)].low_value);
     }
 
 private:
+    // The spot of a vertex at a graph node, on the leg in which its neighbour `owner` lies.
+    Spot seen_towards(int owner, int v, Spot spot) const {
+        const VertexRings& rings = reeb_.mesh.rings;
+        for (int k = rings.begin[at(v)]; k < rings.begin[at(v) + 1]; ++k) {
+            const RingSlot& slot = rings.slots[at(k)];
+            if (slot.neighbour == owner) {
+                const std::vector<int>& arcs = reeb_.arcs_of_edge[at(slot.edge)];
+                const bool up = (reeb_.edge_runs_up[at(slot.edge)] != 0) == slot.forward;
+                spot.dart = up ? dart_up(arcs.front()) : reversed(dart_up(arcs.back()));
+                spot.edge = edge_of(spot.dart);
+                spot.t = runs_forward(spot.dart) ? 0.0 : 1.0;
+            }
+        }
+        return spot;
+    }
+
     double arc_length(int arc) const {
         return std::max(reeb_.arcs[at(arc)].high_value - reeb_.arcs[at(arc)].low_value, 0.0);
     }
@@ -180,7 +204,6 @@ private:
     }
 
     const ReebGraph& reeb_;
-    std::span<const double> values_;
     std::vector<std::vector<int>> arcs_at_;  // Per Reeb node.
     std::vector<int> degree_;                // Of the core.
     std::vector<char> pruned_;               // Per arc.
@@ -223,8 +246,8 @@ Word word_of(const PantsGraph& pants,
 }
 
 // Ring slots of a saddle that see the same leg in several sectors lie on different edges of the
-// tree: all but the first sector get an essential backtrack.
-void part_sectors(GraphMap& map, const VertexRings& rings, int v, Dart own) {
+// tree: all get an essential backtrack but one, that with the neighbour `keep` if there is one.
+void part_sectors(GraphMap& map, const VertexRings& rings, int v, Dart own, int keep) {
     const auto begin = at(rings.begin[at(v)]);
     const std::size_t count = at(rings.begin[at(v) + 1]) - begin;
     const auto seen = [&](const RingSlot& slot) {
@@ -236,11 +259,17 @@ void part_sectors(GraphMap& map, const VertexRings& rings, int v, Dart own) {
         const Word word = seen(rings.slots[begin + k]);
         is_own[k] = word.empty() || word.front() == own ? 1 : 0;
     }
-    const auto gap = std::find(is_own.begin(), is_own.end(), 0);
-    if (gap == is_own.end()) {
-        return;
+    std::size_t shift = 0;
+    while (shift < count && rings.slots[begin + shift].neighbour != keep) {
+        ++shift;
     }
-    const auto shift = static_cast<std::size_t>(gap - is_own.begin());
+    shift = shift == count ? count - 1 : shift;
+    for (std::size_t steps = 0; is_own[shift] != 0; ++steps) {
+        if (steps == count) {
+            return;
+        }
+        shift = (shift + count - 1) % count;
+    }
     int run = 0;
     bool inside = false;
     for (std::size_t i = 1; i < count; ++i) {
@@ -278,59 +307,115 @@ void fix_boundaries(GraphMap& map,
     }
 }
 
-void check_counts(const MetricGraph& graph, int euler, int loops) {
-    std::vector<int> degree(at(graph.nodes), 0);
-    for (const MetricGraph::Edge& edge : graph.edges) {
-        ++degree[at(edge.from)];
-        ++degree[at(edge.to)];
-    }
-    int pants = 0;
-    for (const int d : degree) {
-        pants += d >= 3 ? d - 2 : 0;
-    }
-    if (pants != -euler) {
-        throw Error(ErrorKind::SelfCheck, "pants-graph",
-                    "pants: the decomposition has " + std::to_string(pants) +
-                        " pairs of pants instead of " + std::to_string(-euler) + " with " +
-                        std::to_string(loops) + " boundary loops");
-    }
-}
-
-}  // namespace
-
-GraphMap initial_map(const ReebGraph& reeb,
-                     std::span<const double> values,
-                     const VertexRings& rings,
-                     std::span<const std::vector<int>> boundary_loops) {
-    const PantsGraph pants(reeb, values);
-    const std::size_t vertices = values.size();
+// The first map of the whole sweep mesh.
+GraphMap sweep_map(const ReebGraph& reeb, const PantsGraph& pants) {
+    const SweepMesh& mesh = reeb.mesh;
     GraphMap map;
     map.graph = pants.graph();
-    map.fixed.assign(vertices, 0);
+    map.fixed.assign(mesh.owner.size(), 0);
     std::vector<Spot> spots;
-    for (std::size_t v = 0; v < vertices; ++v) {
+    for (std::size_t v = 0; v < mesh.owner.size(); ++v) {
         spots.push_back(pants.spot_of_vertex(static_cast<int>(v)));
         map.graph_edge.push_back(spots.back().edge);
         map.t.push_back(spots.back().t);
     }
-    for (std::size_t e = 0; e < rings.edges.size(); ++e) {
-        const MeshEdge& edge = rings.edges[e];
+    for (std::size_t e = 0; e < mesh.rings.edges.size(); ++e) {
+        const MeshEdge& edge = mesh.rings.edges[e];
         const bool up = reeb.edge_runs_up[e] != 0;
         const Spot& low = spots[at(up ? edge.from : edge.to)];
         const Spot& high = spots[at(up ? edge.to : edge.from)];
         const Word word = word_of(pants, reeb, reeb.arcs_of_edge[e], low, high);
         map.words.push_back(up ? word : reversed(word));
     }
-    for (std::size_t v = 0; v < vertices; ++v) {
+    for (std::size_t v = 0; v < mesh.owner.size(); ++v) {
         if (reeb.node_of_vertex[v] >= 0 && spots[v].node >= 0) {
-            part_sectors(map, rings, static_cast<int>(v), spots[v].dart);
+            part_sectors(map, mesh.rings, static_cast<int>(v), spots[v].dart, mesh.owner[v]);
         }
     }
-    fix_boundaries(map, pants, reeb, boundary_loops);
+    return map;
+}
+
+int edge_between(const VertexRings& rings, int a, int b) {
+    for (int k = rings.begin[at(a)]; k < rings.begin[at(a) + 1]; ++k) {
+        if (rings.slots[at(k)].neighbour == b) {
+            return rings.slots[at(k)].edge;
+        }
+    }
+    throw Error(ErrorKind::SelfCheck, "broken-tree", "pants: the sweep mesh isn't the surface's");
+}
+
+// The map of the surface: added vertices are drawn onto their owners, caps are left out.
+GraphMap without_added(const SweepMesh& mesh, GraphMap swept, const VertexRings& rings) {
+    for (std::size_t v = mesh.owner.size(); v-- > at(mesh.surface_vertices);) {
+        if (mesh.owner[v] >= 0) {
+            draw_onto(swept, mesh.rings, static_cast<int>(v), mesh.owner[v]);
+        }
+    }
+    const std::size_t count = rings.begin.size() - 1;
+    GraphMap map;
+    map.graph = std::move(swept.graph);
+    map.graph_edge.assign(swept.graph_edge.begin(),
+                          swept.graph_edge.begin() + static_cast<std::ptrdiff_t>(count));
+    map.t.assign(swept.t.begin(), swept.t.begin() + static_cast<std::ptrdiff_t>(count));
+    map.fixed.assign(count, 0);
+    map.words.resize(rings.edges.size());
+    std::vector<char> known(rings.edges.size(), 0);
+    for (std::size_t e = 0; e < mesh.rings.edges.size(); ++e) {
+        const int a = mesh.owner[at(mesh.rings.edges[e].from)];
+        const int b = mesh.owner[at(mesh.rings.edges[e].to)];
+        if (a < 0 || b < 0 || a == b) {
+            continue;
+        }
+        const std::size_t edge = at(edge_between(rings, a, b));
+        Word word =
+            rings.edges[edge].from == a ? std::move(swept.words[e]) : reversed(swept.words[e]);
+        if (known[edge] != 0 && map.words[edge] != word) {
+            throw Error(ErrorKind::SelfCheck, "broken-tree",
+                        "pants: a part of a saddle doesn't fit the others");
+        }
+        known[edge] = 1;
+        map.words[edge] = std::move(word);
+    }
+    return map;
+}
+
+}  // namespace
+
+void check_pants_graph(const MetricGraph& graph, int euler, int loops) {
+    std::vector<int> degree(at(graph.nodes), 0);
+    DisjointSets parts(at(graph.nodes));
+    int joins = 0;
+    for (const MetricGraph::Edge& edge : graph.edges) {
+        ++degree[at(edge.from)];
+        ++degree[at(edge.to)];
+        joins +=
+            parts.unite(static_cast<std::uint32_t>(edge.from), static_cast<std::uint32_t>(edge.to))
+                ? 1
+                : 0;
+    }
+    const auto pants = std::count(degree.begin(), degree.end(), 3);
+    const auto ends = std::count(degree.begin(), degree.end(), 1);
+    const bool connected = joins == graph.nodes - 1;
+    if (pants != -euler || ends != loops || pants + ends != graph.nodes || !connected) {
+        throw Error(
+            ErrorKind::SelfCheck, "pants-graph",
+            fmt::format("pants: the graph has {} nodes, {} of three legs instead of {}, {} ends "
+                        "instead of {}{}",
+                        graph.nodes, pants, -euler, ends, loops,
+                        connected ? "" : ", and is not connected"));
+    }
+}
+
+GraphMap initial_map(const ReebGraph& reeb,
+                     const VertexRings& rings,
+                     std::span<const std::vector<int>> boundary_loops) {
+    const PantsGraph pants(reeb);
     const int faces = static_cast<int>(rings.edge_of_half_edge.size() / 3);
-    check_counts(map.graph,
-                 static_cast<int>(vertices) - static_cast<int>(rings.edges.size()) + faces,
-                 static_cast<int>(boundary_loops.size()));
+    const int euler =
+        static_cast<int>(rings.begin.size()) - 1 - static_cast<int>(rings.edges.size()) + faces;
+    check_pants_graph(pants.graph(), euler, static_cast<int>(boundary_loops.size()));
+    GraphMap map = without_added(reeb.mesh, sweep_map(reeb, pants), rings);
+    fix_boundaries(map, pants, reeb, boundary_loops);
     return map;
 }
 

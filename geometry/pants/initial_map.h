@@ -15,11 +15,21 @@ namespace leafcutter::geometry {
 // Prunes limbs that end in the surface, joins chains, and places vertices and mesh edges. Graph
 // edges have weight 1. Vertices of boundary loop k are fixed at the graph's end node of that loop.
 //
-// `rings` are those of the surface without caps. Throws Error(SelfCheck, "pants-graph") if what is
-// left is no graph of pants: 2g - 2 + b inner nodes counted with degree - 2, 3g - 3 + 2b edges.
+// `rings` are those of the surface that was swept, without what the sweep added. Throws
+// Error(SelfCheck, "pants-graph") as check_pants_graph() does.
 GraphMap initial_map(const ReebGraph& reeb,
-                     std::span<const double> values,
                      const VertexRings& rings,
                      std::span<const std::vector<int>> boundary_loops);
+
+inline GraphMap initial_map(const ReebGraph& reeb,
+                            std::span<const double> /*values*/,
+                            const VertexRings& rings,
+                            std::span<const std::vector<int>> boundary_loops) {
+    return initial_map(reeb, rings, boundary_loops);
+}
+
+// Throws Error(SelfCheck, "pants-graph") unless the graph is connected, with -`euler` nodes of
+// three legs and `loops` of one: then it has 3g - 3 + 2b edges and g cycles.
+void check_pants_graph(const MetricGraph& graph, int euler, int loops);
 
 }  // namespace leafcutter::geometry

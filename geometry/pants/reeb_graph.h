@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/half_edges.h"
+#include "geometry/pants/sweep_mesh.h"
 
 namespace leafcutter::geometry {
 
@@ -19,9 +19,11 @@ struct ReebArc {
     double high_value = 0.0;
 };
 
+// Vertices and edges are those of `mesh`. Nodes have one arc or three.
 struct ReebGraph {
+    SweepMesh mesh;
     std::vector<ReebArc> arcs;
-    std::vector<int> node_vertex;     // Per node: the vertex it is at, or vertex count + loop.
+    std::vector<int> node_vertex;     // Per node: the vertex it is at.
     std::vector<int> boundary_node;   // Per boundary loop: the end node that caps it.
     std::vector<int> arc_of_vertex;   // Regular vertices: their arc; nodes: -1.
     std::vector<int> node_of_vertex;  // -1 for regular vertices.
@@ -31,11 +33,11 @@ struct ReebGraph {
     std::vector<char> edge_runs_up;  // Per mesh edge: its `from` is the lower end.
 };
 
-// `values` per vertex; equal ones are told apart by index. Each loop of `boundary_loops` (surface
-// to the left) is closed by a cap of its own, lowest of all for loops in `low_loops`, else highest.
+// Sweeps the mesh that make_sweep_mesh() makes of the surface; see there.
 ReebGraph build_reeb_graph(std::span<const std::array<int, 3>> triangles,
                            std::span<const double> values,
                            std::span<const std::vector<int>> boundary_loops,
-                           std::span<const char> loop_is_low);
+                           std::span<const char> loop_is_low,
+                           int turn = 0);
 
 }  // namespace leafcutter::geometry
