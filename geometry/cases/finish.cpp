@@ -17,14 +17,20 @@ std::string percent(double ratio) {
     return text.data();
 }
 
-// Sentences about an inaccurate conformal modulus and about repairs that cost accuracy.
-std::vector<std::string> chart_warnings(const Cylinder& cylinder, const FlipReport& repair) {
+std::vector<std::string> gap_warnings(const Cylinder& cylinder) {
     std::vector<std::string> warnings;
     if (cylinder.conformal_gap > kLargestGap) {
         warnings.push_back(
             "the mesh is coarse for its shape: the foliation's modulus is certain to " +
             percent(cylinder.conformal_gap) + " only, so angles may be off; refine the mesh");
     }
+    return warnings;
+}
+
+}  // namespace
+
+std::vector<std::string> repair_warnings(const FlipReport& repair) {
+    std::vector<std::string> warnings;
     if (repair.opened_limbs) {
         warnings.emplace_back(
             "the model has limbs too long for one chart: a few cells swallow each of them; cut a "
@@ -40,8 +46,6 @@ std::vector<std::string> chart_warnings(const Cylinder& cylinder, const FlipRepo
     return warnings;
 }
 
-}  // namespace
-
 Foliation finish_foliation(SolvedChart solved,
                            const std::vector<Rail>& rails,
                            const Context& context) {
@@ -54,7 +58,10 @@ Foliation finish_foliation(SolvedChart solved,
     Foliation foliation;
     foliation.energy = cylinder.energy;
     foliation.iterations = 1;
-    foliation.warnings = chart_warnings(cylinder, repair);
+    foliation.warnings = gap_warnings(cylinder);
+    for (std::string& warning : repair_warnings(repair)) {
+        foliation.warnings.push_back(std::move(warning));
+    }
     foliation.cylinders.push_back(std::move(cylinder));
     return foliation;
 }

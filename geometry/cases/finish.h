@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "geometry/foliation.h"
@@ -9,6 +10,9 @@
 #include "geometry/harmonic/resolve.h"
 
 namespace leafcutter::geometry {
+
+// What a user should know about a repair that cost accuracy.
+std::vector<std::string> repair_warnings(const FlipReport& repair);
 
 // Makes the chart one-to-one and says in `warnings` what a user should know about it. `mode` and
 // `graph` are left to the caller.
