@@ -1,5 +1,8 @@
 #include "geometry/pants/vertex_rings.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace leafcutter::geometry {
 namespace {
 
@@ -19,19 +22,20 @@ std::vector<int> ring_starts(const HalfEdges& half_edges, int vertex_count) {
     return start;
 }
 
-void number_edges(VertexRings& rings, const HalfEdges& half_edges) {
-    rings.edge_of_half_edge.assign(at(half_edges.size()), -1);
+std::vector<int> edge_numbers(const HalfEdges& half_edges) {
+    std::vector<int> number(at(half_edges.size()), -1);
+    int edges = 0;
     for (int h = 0; h < half_edges.size(); ++h) {
         if (!half_edges.is_first(h)) {
             continue;
         }
-        const int edge = static_cast<int>(rings.edges.size());
-        rings.edges.push_back({half_edges.from_of(h), half_edges.to_of(h), h});
-        rings.edge_of_half_edge[at(h)] = edge;
+        number[at(h)] = edges;
         if (half_edges.twin_of(h) >= 0) {
-            rings.edge_of_half_edge[at(half_edges.twin_of(h))] = edge;
+            number[at(half_edges.twin_of(h))] = edges;
         }
+        ++edges;
     }
+    return number;
 }
 
 RingSlot slot_along(const VertexRings& rings, int half_edge, int vertex) {
@@ -63,8 +67,24 @@ void append_ring(VertexRings& rings, const HalfEdges& half_edges, int start) {
 }  // namespace
 
 VertexRings build_vertex_rings(const HalfEdges& half_edges, int vertex_count) {
+    return build_vertex_rings(half_edges, vertex_count, edge_numbers(half_edges));
+}
+
+VertexRings build_vertex_rings(const HalfEdges& half_edges,
+                               int vertex_count,
+                               std::vector<int> edge_of_half_edge) {
     VertexRings rings;
-    number_edges(rings, half_edges);
+    rings.edge_of_half_edge = std::move(edge_of_half_edge);
+    const auto last =
+        std::max_element(rings.edge_of_half_edge.begin(), rings.edge_of_half_edge.end());
+    rings.edges.resize(last == rings.edge_of_half_edge.end() ? 0 : at(*last) + 1);
+    for (int h = 0; h < half_edges.size(); ++h) {
+        if (half_edges.is_first(h)) {
+            rings.edges[at(rings.edge_of_half_edge[at(h)])] = {half_edges.from_of(h),
+                                                               half_edges.to_of(h), h};
+        }
+    }
+    // Every edge is in the rings of its two ends.
     rings.slots.reserve(rings.edges.size() * 2);
     rings.begin.reserve(at(vertex_count) + 1);
     for (const int start : ring_starts(half_edges, vertex_count)) {

@@ -35,4 +35,10 @@ struct VertexRings {
 // Every vertex has one ring: the mesh is manifold, without unused vertices.
 VertexRings build_vertex_rings(const HalfEdges& half_edges, int vertex_count);
 
+// The same with edges numbered as given: one number for both half-edges of an edge, 0 to their
+// count.
+VertexRings build_vertex_rings(const HalfEdges& half_edges,
+                               int vertex_count,
+                               std::vector<int> edge_of_half_edge);
+
 }  // namespace leafcutter::geometry

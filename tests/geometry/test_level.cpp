@@ -1,0 +1,318 @@
+// Levels of detail of a surface for the graph-valued map: what collapses and flips must keep, and
+// that maps carried between levels stay in their homotopy class.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "geometry/half_edges.h"
+#include "geometry/harmonic/chart_surface.h"
+#include "geometry/io/read_mesh.h"
+#include "geometry/mesh.h"
+#include "geometry/pants/harmonic_map.h"
+#include "geometry/pants/initial_map.h"
+#include "geometry/pants/level.h"
+#include "geometry/pants/reeb_graph.h"
+#include "geometry/pants/slice.h"
+#include "geometry/pants/split_long_edges.h"
+#include "geometry/repair.h"
+#include "geometry/samples.h"
+#include "geometry/topology.h"
+#include "tests/geometry/surfaces.h"
+
+namespace leafcutter::geometry {
+namespace {
+
+using testing::at;
+
+using Loops = std::vector<std::vector<int>>;
+
+struct Lined {
+    LinedSurface surface;
+    Loops loops;  // Boundary, surface to the left.
+};
+
+int count_of(const TriangleMesh& mesh) {
+    return static_cast<int>(mesh.positions.size());
+}
+
+VertexRings rings_of(const TriangleMesh& mesh) {
+    return build_vertex_rings(build_half_edges(mesh.triangles, count_of(mesh)), count_of(mesh));
+}
+
+int euler_of(const TriangleMesh& mesh) {
+    return count_of(mesh) - static_cast<int>(rings_of(mesh).edges.size()) +
+           static_cast<int>(mesh.triangles.size());
+}
+
+// All boundary loops, each from its least vertex, in the order of these.
+Loops boundary_loops(const TriangleMesh& mesh) {
+    const HalfEdges edges = build_half_edges(mesh.triangles, count_of(mesh));
+    std::map<int, int> next;
+    for (int h = 0; h < edges.size(); ++h) {
+        if (edges.twin_of(h) < 0) {
+            EXPECT_TRUE(next.emplace(edges.from_of(h), edges.to_of(h)).second) << "pinched";
+        }
+    }
+    Loops loops;
+    while (!next.empty()) {
+        loops.emplace_back();
+        const int start = next.begin()->first;
+        for (int v = start; next.count(v) > 0;) {
+            loops.back().push_back(v);
+            const int following = next.at(v);
+            next.erase(v);
+            v = following;
+        }
+    }
+    return loops;
+}
+
+// With all edges between two boundary vertices split, as the solver makes it.
+Lined lined(const TriangleMesh& mesh) {
+    std::vector<std::uint8_t> on_boundary(mesh.positions.size(), 0);
+    for (const std::vector<int>& loop : boundary_loops(mesh)) {
+        for (const int v : loop) {
+            on_boundary[at(v)] = 1;
+        }
+    }
+    Lined out;
+    out.surface.mesh = start_surface(mesh, std::move(on_boundary)).mesh;
+    out.surface.line_of_vertex.assign(out.surface.mesh.positions.size(), -1);
+    out.loops = boundary_loops(out.surface.mesh);
+    for (std::size_t k = 0; k < out.loops.size(); ++k) {
+        for (const int v : out.loops[k]) {
+            out.surface.line_of_vertex[at(v)] = static_cast<int>(k);
+        }
+    }
+    return out;
+}
+
+TriangleMesh without_unused(const TriangleMesh& mesh) {
+    std::vector<int> fresh(mesh.positions.size(), -1);
+    TriangleMesh out;
+    for (auto t : mesh.triangles) {
+        for (int& v : t) {
+            int& name = fresh[at(v)];
+            if (name < 0) {
+                name = static_cast<int>(out.positions.size());
+                out.positions.push_back(mesh.positions[at(v)]);
+            }
+            v = name;
+        }
+        out.triangles.push_back(t);
+    }
+    return out;
+}
+
+// A sphere without the triangles near three of its points.
+TriangleMesh sphere_with_holes() {
+    TriangleMesh mesh = make_sample("sphere", 6000);
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& p : mesh.positions) {
+        centre += p / static_cast<double>(mesh.positions.size());
+    }
+    std::erase_if(mesh.triangles, [&](const std::array<int, 3>& t) {
+        return std::any_of(t.begin(), t.end(), [&](int v) {
+            const Eigen::Vector3d d = (mesh.positions[at(v)] - centre).normalized();
+            return d.x() > 0.95 || d.y() > 0.95 || d.z() < -0.95;
+        });
+    });
+    return without_unused(mesh);
+}
+
+TriangleMesh needles() {
+    TriangleMesh mesh = make_sample("eight", 3000);
+    std::minstd_rand random(7);
+    testing::add_needles(mesh, 400, random);
+    return mesh;
+}
+
+TriangleMesh shared_model(const char* file) {
+    const std::filesystem::path path =
+        std::filesystem::path(LEAFCUTTER_SHARED_DIR) / "data" / "meshes" / file;
+    std::ifstream in(path, std::ios::binary);
+    if (!in) {
+        return {};
+    }
+    const std::vector<char> bytes((std::istreambuf_iterator<char>(in)), {});
+    return to_triangle_mesh(repair(read_mesh(std::as_bytes(std::span(bytes)), file)).mesh);
+}
+
+struct Case {
+    const char* name;
+    TriangleMesh (*make)();
+};
+
+void PrintTo(const Case& one, std::ostream* out) {
+    *out << one.name;
+}
+
+class Level : public ::testing::TestWithParam<Case> {
+protected:
+    void SetUp() override {
+        const TriangleMesh mesh = GetParam().make();
+        if (mesh.triangles.empty()) {
+            GTEST_SKIP() << "no shared data";
+        }
+        whole_ = lined(mesh);
+    }
+    Lined whole_;
+};
+
+INSTANTIATE_TEST_SUITE_P(
+    Surfaces,
+    Level,
+    ::testing::Values(Case{"eight", [] { return make_sample("eight", 6000); }},
+                      Case{"doubletorus", [] { return make_sample("double-torus", 6000); }},
+                      Case{"holes", sphere_with_holes},
+                      Case{"needles", needles},
+                      Case{"torus", [] { return testing::make_torus(40, 90, 0.3); }},
+                      Case{"prism", [] { return testing::make_prism(40, 60, 1.0, 3.0); }},
+                      Case{"fertility", [] { return shared_model("fertility.off"); }},
+                      Case{"boot", [] { return shared_model("boot.obj"); }},
+                      Case{"hand", [] { return shared_model("hand-6-boundaries.obj"); }}),
+    [](const auto& tested) { return std::string(tested.param.name); });
+
+std::pair<int, int> ends_of(const MeshEdge& edge) {
+    return {std::min(edge.from, edge.to), std::max(edge.from, edge.to)};
+}
+
+std::set<std::pair<int, int>> vertex_pairs(const VertexRings& rings) {
+    std::set<std::pair<int, int>> pairs;
+    for (const MeshEdge& edge : rings.edges) {
+        pairs.insert(ends_of(edge));
+    }
+    return pairs;
+}
+
+void expect_simplicial(const VertexRings& rings) {
+    EXPECT_EQ(vertex_pairs(rings).size(), rings.edges.size());
+    for (const MeshEdge& edge : rings.edges) {
+        EXPECT_NE(edge.from, edge.to);
+    }
+}
+
+int line_length(const LinedSurface& surface, int line) {
+    return static_cast<int>(
+        std::count(surface.line_of_vertex.begin(), surface.line_of_vertex.end(), line));
+}
+
+// Boundary edges apart, no edge joins two boundary vertices.
+void expect_no_chords(const LinedSurface& surface, const VertexRings& rings) {
+    const HalfEdges edges = build_half_edges(surface.mesh.triangles, count_of(surface.mesh));
+    for (const MeshEdge& edge : rings.edges) {
+        if (edges.twin_of(edge.half_edge) >= 0) {
+            EXPECT_FALSE(surface.line_of_vertex[at(edge.from)] >= 0 &&
+                         surface.line_of_vertex[at(edge.to)] >= 0);
+        }
+    }
+}
+
+// The same surface with flipped triangles.
+LinedSurface flipped_surface(const LinedSurface& surface, const FlippedSurface& flipped) {
+    LinedSurface out = surface;
+    for (std::size_t h = 0; h < flipped.half_edges.from.size(); ++h) {
+        out.mesh.triangles[h / 3][h % 3] = flipped.half_edges.from[h];
+    }
+    return out;
+}
+
+void expect_coarser(const Lined& fine, const CoarsenOptions& options) {
+    const Coarser coarser = coarsen(fine.surface, options, {});
+    const TriangleMesh& mesh = coarser.surface.mesh;
+    const VertexRings fine_rings = rings_of(fine.surface.mesh);
+    const VertexRings rings = rings_of(mesh);
+    EXPECT_EQ(euler_of(mesh), euler_of(fine.surface.mesh));
+    expect_simplicial(rings);
+    expect_no_chords(coarser.surface, rings);
+    EXPECT_LE(mesh.positions.size(), options.target_vertices + 5 * options.target_vertices / 100);
+
+    const Loops loops = boundary_loops(mesh);
+    ASSERT_EQ(loops.size(), fine.loops.size());
+    for (const std::vector<int>& loop : loops) {
+        const int line = coarser.surface.line_of_vertex[at(loop.front())];
+        for (const int v : loop) {
+            EXPECT_EQ(coarser.surface.line_of_vertex[at(v)], line);
+        }
+        EXPECT_EQ(line_length(coarser.surface, line), static_cast<int>(loop.size()));
+        EXPECT_GE(static_cast<int>(loop.size()),
+                  std::min(options.least_line_vertices, line_length(fine.surface, line)));
+    }
+
+    ASSERT_EQ(coarser.representative.size(), fine.surface.mesh.positions.size());
+    const auto pairs = vertex_pairs(rings);
+    for (const MeshEdge& edge : fine_rings.edges) {
+        const int from = coarser.representative[at(edge.from)];
+        const int to = coarser.representative[at(edge.to)];
+        EXPECT_TRUE(from == to || pairs.count(std::minmax(from, to)) > 0);
+    }
+    for (std::size_t v = 0; v < coarser.representative.size(); ++v) {
+        const int kept = coarser.representative[v];
+        if (fine.surface.line_of_vertex[v] >= 0) {
+            EXPECT_EQ(coarser.surface.line_of_vertex[at(kept)], fine.surface.line_of_vertex[v]);
+        }
+    }
+}
+
+TEST_P(Level, CollapseKeepsTopologyAndLines) {
+    const std::size_t count = whole_.surface.mesh.positions.size();
+    for (const std::size_t target : {count / 4, count / 12}) {
+        SCOPED_TRACE(target);
+        expect_coarser(whole_, {.target_vertices = target, .least_line_vertices = 16});
+    }
+}
+
+TEST_P(Level, CollapseStartsFromFlippedTrianglesToo) {
+    const FlippedSurface flipped = flip_to_delaunay(whole_.surface, rings_of(whole_.surface.mesh));
+    whole_.surface = flipped_surface(whole_.surface, flipped);
+    const std::size_t count = whole_.surface.mesh.positions.size();
+    expect_coarser(whole_, {.target_vertices = count / 4, .least_line_vertices = 16});
+}
+
+TEST_P(Level, FlipsEndDelaunayAndSimplicial) {
+    const VertexRings rings = rings_of(whole_.surface.mesh);
+    const FlippedSurface flipped = flip_to_delaunay(whole_.surface, rings);
+    const LinedSurface after = flipped_surface(whole_.surface, flipped);
+    const VertexRings again = rings_of(after.mesh);
+    EXPECT_EQ(euler_of(after.mesh), euler_of(whole_.surface.mesh));
+    expect_simplicial(flipped.rings);
+    expect_no_chords(after, again);
+    EXPECT_EQ(vertex_pairs(flipped.rings), vertex_pairs(again));
+    EXPECT_EQ(again.begin, flipped.rings.begin);
+    std::set<int> touched(flipped.flips.begin(), flipped.flips.end());
+    for (std::size_t e = 0; e < rings.edges.size(); ++e) {
+        EXPECT_GT(flipped.weights[e], 0.0);
+        if (touched.count(static_cast<int>(e)) == 0) {
+            EXPECT_EQ(ends_of(rings.edges[e]), ends_of(flipped.rings.edges[e]));
+        }
+    }
+    double area = 0.0;
+    for (const double a : flipped.area) {
+        area += a;
+    }
+    double expected = 0.0;
+    for (const auto& t : whole_.surface.mesh.triangles) {
+        const Eigen::Vector3d& p = whole_.surface.mesh.positions[at(t[0])];
+        expected += 0.5 * (whole_.surface.mesh.positions[at(t[1])] - p)
+                              .cross(whole_.surface.mesh.positions[at(t[2])] - p)
+                              .norm();
+    }
+    EXPECT_NEAR(area / expected, 1.0, 1e-3);
+    EXPECT_LE(flipped.forced_weights, static_cast<int>(rings.edges.size() / 500));
+}
+
+}  // namespace
+}  // namespace leafcutter::geometry
