@@ -21,6 +21,9 @@ constexpr std::size_t kCoarsening = 4;
 constexpr int kSettlePasses = 3;
 // Least length of a cylinder, by the longest.
 constexpr double kLeastHeight = 0.02;
+// Powers tried for evening cells, and steps with each.
+constexpr std::array<double, 2> kEveningPowers{-0.25, -0.5};
+constexpr int kEveningSteps = 3;
 // What a factor e of loop length costs, in units of unevenness.
 constexpr double kLengthShare = 0.1;
 
@@ -220,6 +223,38 @@ void judge(CoarseMap& solved, const Hierarchy::Level& level) {
         solved.unevenness + kLengthShare * std::log(solved.loop_length / std::sqrt(surface));
 }
 
+// Candidates on the flipped surface, whose edges have numbers of their own: a flip keeps them.
+std::vector<PantsCandidate> candidates_of(const Hierarchy::Level& level,
+                                          Lines lines,
+                                          const CoarseOptions& options,
+                                          const Context& context) {
+    const VertexRings& numbered = level.flipped.rings;
+    const std::vector<std::array<int, 3>> triangles = triangles_of(level.flipped.half_edges);
+    const VertexRings rings = build_vertex_rings(
+        level.flipped.half_edges, static_cast<int>(level.surface.mesh.positions.size()));
+    std::vector<int> number;
+    std::vector<double> weights;
+    for (const MeshEdge& edge : rings.edges) {
+        number.push_back(numbered.edge_of_half_edge[at(edge.half_edge)]);
+        weights.push_back(level.flipped.weights[at(number.back())]);
+    }
+    const DecompositionSurface surface{
+        triangles, level.surface.mesh.positions, rings,
+        weights,   std::move(lines.boundary),    std::move(lines.cuts)};
+    std::vector<PantsCandidate> candidates =
+        pants_candidates(surface, options.pants, options.function, options.attempt, context);
+    for (PantsCandidate& candidate : candidates) {
+        std::vector<Word> words(candidate.map.words.size());
+        for (std::size_t e = 0; e < words.size(); ++e) {
+            const bool same = numbered.edges[at(number[e])].from == rings.edges[e].from;
+            Word& word = candidate.map.words[e];
+            words[at(number[e])] = same ? std::move(word) : reversed(word);
+        }
+        candidate.map.words = std::move(words);
+    }
+    return candidates;
+}
+
 CoarseMap solve_one(const Hierarchy::Level& level,
                     GraphMap map,
                     MapStart start,
@@ -230,6 +265,32 @@ CoarseMap solve_one(const Hierarchy::Level& level,
         solve_harmonic_map(solved.map, level.flipped.rings, level.flipped.weights, start, context);
     judge(solved, level);
     return solved;
+}
+
+// Gives long thin cylinders more height and short fat ones less: weights times the aspect ratio
+// circumference / height, relative to its mean, to a small negative power. The contrary, making all
+// ratios equal, makes cells uneven.
+std::vector<double> evened_weights(const CoarseMap& solved,
+                                   const Hierarchy::Level& level,
+                                   double power) {
+    const std::vector<MetricGraph::Edge>& edges = solved.map.graph.edges;
+    const std::vector<FlatArea> parts = flat_areas(level, solved.map);
+    std::vector<double> flat(edges.size(), 0.0);
+    for (std::size_t t = 0; t < parts.size(); ++t) {
+        const int v = level.flipped.half_edges.from_of(static_cast<int>(3 * t));
+        flat[at(solved.map.graph_edge[at(v)])] += parts[t].flat;
+    }
+    std::vector<double> weights;
+    double mean = 0.0;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const double h = edges[e].weight;
+        weights.push_back(std::log(std::max(flat[e], 1e-12 * h * h) / (h * h)));
+        mean += weights.back() / static_cast<double>(edges.size());
+    }
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        weights[e] = edges[e].weight * std::exp(power * (weights[e] - mean));
+    }
+    return weights;
 }
 
 void check_weights(const std::vector<double>& weights, const MetricGraph& graph) {
@@ -255,6 +316,27 @@ std::vector<CoarseMap> solve_candidate(const Hierarchy::Level& level,
     solved.push_back(solve_one(level, std::move(second), MapStart::Cold, context));
     solved.back().name = candidate.name + ", equal weights";
     return solved;
+}
+
+// The best of a few steps from a solved map towards even cells. Going on for long would flatten
+// short cylinders to nothing.
+CoarseMap with_even_cells(const Hierarchy::Level& level,
+                          const CoarseMap& start,
+                          double power,
+                          const Context& context) {
+    CoarseMap best = start;
+    CoarseMap last = start;
+    for (int step = 0; step < kEveningSteps; ++step) {
+        GraphMap map = last.map;
+        set_weights(map, evened_weights(last, level, power));
+        last = solve_one(level, std::move(map), MapStart::Cold, context);
+        last.name = start.name + ", evened";
+        if (!(last.score < best.score)) {
+            break;
+        }
+        best = last;
+    }
+    return best;
 }
 
 // The same decompositions in the same order, with weights as given: the numbers of cylinders are
@@ -313,15 +395,8 @@ std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
     Lines lines = lines_of(hierarchy, level);
     const std::vector<double> distance =
         path_lengths(level, lines.boundary.empty() ? std::vector<int>{0} : lines.boundary.front());
-    const std::vector<std::array<int, 3>> triangles = triangles_of(level.flipped.half_edges);
-    const DecompositionSurface surface{triangles,
-                                       level.surface.mesh.positions,
-                                       level.flipped.rings,
-                                       level.flipped.weights,
-                                       std::move(lines.boundary),
-                                       std::move(lines.cuts)};
     const std::vector<PantsCandidate> candidates =
-        pants_candidates(surface, options.pants, options.function, options.attempt, context);
+        candidates_of(level, std::move(lines), options, context);
     std::vector<std::vector<CoarseMap>> of_candidate(candidates.size());
     for_each_task(candidates.size(), context, [&](std::size_t i, const Context& own) {
         of_candidate[i] = solve_candidate(level, candidates[i], distance, own);
@@ -330,9 +405,19 @@ std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
     for (std::vector<CoarseMap>& some : of_candidate) {
         std::move(some.begin(), some.end(), std::back_inserter(all));
     }
-    std::stable_sort(all.begin(), all.end(), [](const CoarseMap& a, const CoarseMap& b) {
-        return a.score < b.score;
-    });
+    std::stable_sort(all.begin(), all.end(),
+                     [](const CoarseMap& a, const CoarseMap& b) { return a.score < b.score; });
+    if (!all.empty()) {
+        std::array<CoarseMap, kEveningPowers.size()> evened;
+        for_each_task(evened.size(), context, [&](std::size_t i, const Context& own) {
+            evened[i] = with_even_cells(level, all.front(), kEveningPowers[i], own);
+        });
+        for (CoarseMap& map : evened) {
+            if (map.score < all.front().score) {
+                all.insert(all.begin(), std::move(map));
+            }
+        }
+    }
     if (options.weights) {
         return with_weights(level, std::move(all), *options.weights, context);
     }
