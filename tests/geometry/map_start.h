@@ -103,7 +103,7 @@ inline MapStart start_map(TriangleMesh mesh, int axis) {
     }
     const std::vector<double> swept(values.begin(), values.end());
     const ReebGraph reeb = build_reeb_graph(start.mesh.triangles, swept, loops, is_low);
-    start.map = initial_map(reeb, swept, start.rings, loops);
+    start.map = initial_map(reeb, start.rings, loops);
     return start;
 }
 
