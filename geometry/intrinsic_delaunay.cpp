@@ -154,6 +154,7 @@ void make_delaunay(IntrinsicTriangulation& mesh) {
         flip(mesh, h);
         ++mesh.flips;
         const int t = mesh.edges.twin_of(h);
+        mesh.flip_log.push_back({h, t});
         for (const int side : {HalfEdges::next(h), HalfEdges::previous(h), HalfEdges::next(t),
                                HalfEdges::previous(t)}) {
             if (waiting[at(side)] == 0) {
@@ -165,6 +166,28 @@ void make_delaunay(IntrinsicTriangulation& mesh) {
 }
 
 }  // namespace
+
+std::vector<double> undo_flips(const IntrinsicTriangulation& triangulation,
+                               std::vector<double> values) {
+    const auto& log = triangulation.flip_log;
+    for (auto flipped = log.rbegin(); flipped != log.rend(); ++flipped) {
+        // The places of flip(), read backwards.
+        const auto [h, t] = *flipped;
+        double& h1 = values[at(HalfEdges::next(h))];
+        double& h2 = values[at(HalfEdges::previous(h))];
+        double& t1 = values[at(HalfEdges::next(t))];
+        double& t2 = values[at(HalfEdges::previous(t))];
+        const double through_d = t2 + h1;
+        const double d_to_b = h1;
+        h1 = h2;
+        h2 = t1;
+        t1 = t2;
+        t2 = d_to_b;
+        values[at(h)] = through_d;
+        values[at(t)] = -through_d;
+    }
+    return values;
+}
 
 double facing_cotangent(const IntrinsicTriangulation& triangulation, int half_edge) {
     const double a = triangulation.length[at(half_edge)];

@@ -29,6 +29,7 @@ struct IntrinsicTriangulation {
     std::vector<double> length;  // Per half-edge.
     std::vector<Jump> jump;      // Per half-edge.
     int flips = 0;
+    std::vector<std::array<int, 2>> flip_log;  // The two half-edges of each flip, in order.
     double added_length = 0.0;  // By which every edge was made longer, so that no triangle is flat.
 };
 
@@ -36,6 +37,11 @@ struct IntrinsicTriangulation {
 IntrinsicTriangulation intrinsic_delaunay(const TriangleMesh& mesh,
                                           const HalfEdges& edges,
                                           std::span<const Jump> jump = {});
+
+// Takes the values of a closed cochain, one for each half-edge, back to the triangulation that was
+// flipped into this one.
+std::vector<double> undo_flips(const IntrinsicTriangulation& triangulation,
+                               std::vector<double> values);
 
 // Cotangent of the angle that faces `half_edge` in its triangle.
 double facing_cotangent(const IntrinsicTriangulation& triangulation, int half_edge);

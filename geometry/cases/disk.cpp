@@ -24,11 +24,11 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-Sides cut_sides(std::span<const int> loop, const LoopCorners& corners, std::size_t first) {
+Sides cut_sides(std::span<const int> loop, const LoopCorners& corners) {
     Sides sides;
     for (std::size_t k = 0; k < 4; ++k) {
-        const std::size_t end = at(corners[(first + k + 1) % 4]);
-        std::size_t i = at(corners[(first + k) % 4]);
+        const std::size_t end = at(corners[(k + 1) % 4]);
+        std::size_t i = at(corners[k]);
         for (; i != end; i = (i + 1) % loop.size()) {
             sides[k].push_back(loop[i]);
         }
@@ -123,7 +123,19 @@ Foliation foliate_disk(const TriangleMesh& mesh,
     }
     const LoopCorners chosen =
         options.corners ? locate_corners(loop, *options.corners) : choose_corners(mesh, loop);
-    const Sides sides = cut_sides(loop, chosen, first_corner(arc_lengths(mesh, loop), chosen));
+    const std::size_t first = first_corner(arc_lengths(mesh, loop), chosen);
+    return foliate_rectangle(
+        mesh, loop,
+        {chosen[first], chosen[(first + 1) % 4], chosen[(first + 2) % 4], chosen[(first + 3) % 4]},
+        options, context);
+}
+
+Foliation foliate_rectangle(const TriangleMesh& mesh,
+                            std::span<const int> loop,
+                            const LoopCorners& corner_places,
+                            const FoliationOptions& options,
+                            const Context& context) {
+    const Sides sides = cut_sides(loop, corner_places);
     const std::array<int, 4> corners{sides[Bottom].front(), sides[Right].front(),
                                      sides[Top].front(), sides[Left].front()};
     SolvedChart solved =

@@ -7,6 +7,7 @@
 
 #include <span>
 
+#include "geometry/cases/corners.h"
 #include "geometry/foliation.h"
 
 namespace leafcutter::geometry {
@@ -17,5 +18,13 @@ Foliation foliate_disk(const TriangleMesh& mesh,
                        std::span<const int> loop,
                        const FoliationOptions& options,
                        const Context& context);
+
+// The same with f = 0 between the first two of `corners`, which are in the loop's direction, and
+// f = 1 between the others.
+Foliation foliate_rectangle(const TriangleMesh& mesh,
+                            std::span<const int> loop,
+                            const LoopCorners& corners,
+                            const FoliationOptions& options,
+                            const Context& context);
 
 }  // namespace leafcutter::geometry

@@ -1,15 +1,326 @@
 #include "geometry/cases/one_form.h"
 
-namespace leafcutter::geometry {
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
 
-Foliation foliate_one_form(const TriangleMesh& /*mesh*/,
-                           const std::vector<std::vector<int>>& /*loops*/,
-                           const std::vector<int>& /*sources*/,
-                           const std::vector<int>& /*sinks*/,
-                           const FoliationOptions& /*options*/,
-                           const Context& /*context*/) {
-    throw Error(ErrorKind::NotSupported, "mode-not-built",
-                "foliation.mode: one-form is not supported yet; use auto");
+#include <fmt/format.h>
+
+#include "geometry/cases/annulus.h"
+#include "geometry/cases/disk.h"
+#include "geometry/cell_spread.h"
+#include "geometry/harmonic/conjugate_form.h"
+#include "geometry/harmonic/form_parts.h"
+#include "geometry/harmonic/form_zeros.h"
+#include "geometry/harmonic/leaf_cut.h"
+#include "geometry/harmonic/resolve.h"
+
+namespace leafcutter::geometry {
+namespace {
+
+// The flux of a hole of few edges is known badly, and with it the widths of all parts.
+constexpr std::size_t kLeastLoopVertices = 32;
+constexpr int kMostLoopRounds = 6;
+// Rounds of splitting near vertices where the solution looks like no harmonic form.
+constexpr int kMostRegularRounds = 6;
+// f may turn back by this much on a leaf of F*, where it only rises.
+constexpr double kMostTurn = 0.02;
+// Bounds of the error of all widths together, and of the whole surface's modulus.
+constexpr double kMostFluxError = 0.3;
+constexpr double kNotableError = 0.05;
+
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
+[[noreturn]] void refuse(const std::string& code, const std::string& what) {
+    throw Error(ErrorKind::BadOption, code, what);
+}
+
+[[noreturn]] void fail(const std::string& what) {
+    throw Error(ErrorKind::SelfCheck, "one-form", "one-form, " + what);
+}
+
+// What each loop is: bits of LoopBit.
+std::vector<std::uint8_t> loop_kinds(std::size_t count,
+                                     const std::vector<int>& sources,
+                                     const std::vector<int>& sinks) {
+    std::vector<std::uint8_t> kinds(count, kNaturalLoop | kBoundaryLoop);
+    const auto name = [&](const std::vector<int>& loops, LoopBit bit, const std::string& what) {
+        const std::string option = "foliation." + what;
+        if (loops.empty()) {
+            refuse("bad-" + what, fmt::format("{}: one-form needs at least one; the model has {} "
+                                              "boundary loops: open holes with foliation.puncture "
+                                              "if it has less than two",
+                                              option, count));
+        }
+        for (const int loop : loops) {
+            if (loop < 0 || at(loop) >= count) {
+                refuse("bad-" + what, fmt::format("{}: there is no boundary loop {}, the model has "
+                                                  "{}",
+                                                  option, loop, count));
+            }
+            if ((kinds[at(loop)] & kNaturalLoop) == 0) {
+                refuse("bad-" + what,
+                       fmt::format("{}: boundary loop {} is named twice", option, loop));
+            }
+            kinds[at(loop)] = static_cast<std::uint8_t>(bit | kBoundaryLoop);
+        }
+    };
+    name(sources, kSourceLoop, "sources");
+    name(sinks, kSinkLoop, "sinks");
+    return kinds;
+}
+
+int euler_characteristic(const HalfEdges& edges, std::size_t vertices) {
+    int count = static_cast<int>(vertices) + edges.size() / 3;
+    for (int h = 0; h < edges.size(); ++h) {
+        count -= edges.is_first(h) ? 1 : 0;
+    }
+    return count;
+}
+
+// Splits the triangles at loops of few vertices.
+ChartSurface with_fine_loops(ChartSurface surface) {
+    for (int round = 0; round < kMostLoopRounds; ++round) {
+        std::vector<char> near(surface.mesh.positions.size(), 0);
+        bool any = false;
+        for (const std::vector<int>& walk : boundary_walks(surface.edges)) {
+            if (walk.size() >= kLeastLoopVertices) {
+                continue;
+            }
+            any = true;
+            for (const int h : walk) {
+                near[at(surface.edges.from_of(h))] = 1;
+            }
+        }
+        if (!any) {
+            break;
+        }
+        std::vector<char> marked(at(surface.edges.size()), 0);
+        for (int h = 0; h < surface.edges.size(); ++h) {
+            if (near[at(surface.edges.from_of(h))] != 0) {
+                std::fill_n(marked.begin() + 3 * static_cast<std::ptrdiff_t>(h / 3), 3, char{1});
+            }
+        }
+        surface = split_edges(std::move(surface), marked);
+    }
+    return surface;
+}
+
+// A surface fine enough for its one-form, and that form.
+struct SolvedForm {
+    ChartSurface surface;
+    ConjugateForm form;
+    std::vector<FormZero> zeros;
+};
+
+SolvedChart solve_whole(const ChartSurface& surface, SolvedForm& out) {
+    out.surface = surface;
+    out.form = solve_conjugate_form(surface);
+    SolvedChart solved;
+    solved.map = start_chart(surface);
+    solved.map.jump.resize(out.form.rise.size());
+    for (std::size_t v = 0; v < out.form.f.size(); ++v) {
+        solved.map.gf[v] = {0.0, out.form.f[v]};
+    }
+    for (std::size_t h = 0; h < out.form.rise.size(); ++h) {
+        solved.map.jump[h] = {out.form.rise[h], 0.0};
+    }
+    solved.upper = out.form.conjugate;
+    solved.lower = out.form.flux;
+    return solved;
+}
+
+std::vector<char> edges_near(const ChartSurface& surface, const std::vector<int>& vertices) {
+    std::vector<char> near(surface.mesh.positions.size(), 0);
+    for (const int v : vertices) {
+        near[at(v)] = 1;
+    }
+    std::vector<char> marked(at(surface.edges.size()), 0);
+    for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t) {
+        const auto& triangle = surface.mesh.triangles[t];
+        if (std::any_of(triangle.begin(), triangle.end(),
+                        [&](int v) { return near[at(v)] != 0; })) {
+            std::fill_n(marked.begin() + 3 * static_cast<std::ptrdiff_t>(t), 3, char{1});
+        }
+    }
+    return marked;
+}
+
+void check_orders(const SolvedForm& solved, int euler) {
+    int doubled = 0;
+    for (const FormZero& zero : solved.zeros) {
+        const bool natural = (solved.surface.lines[at(zero.vertex)] & kNaturalLoop) != 0;
+        doubled += natural ? zero.lines : zero.lines - 2;
+    }
+    if (doubled != -2 * euler) {
+        fail(fmt::format("zeros: orders add up to {} instead of {}", 0.5 * doubled, -euler));
+    }
+}
+
+SolvedForm solve_form(ChartSurface surface, Refinement refinement, const Context& context) {
+    const bool may_split = refinement == Refinement::Allowed;
+    if (may_split) {
+        surface = with_fine_loops(std::move(surface));
+    }
+    SolvedForm out;
+    solve_resolved(
+        std::move(surface), [&out](const ChartSurface& s) { return solve_whole(s, out); },
+        refinement, context);
+    for (int round = 0;; ++round) {
+        context.check();
+        const bool last = !may_split || round == kMostRegularRounds;
+        const FormZeros found = make_regular(out.surface, out.form.rise,
+                                             last ? FormRepair::Everywhere : FormRepair::Near);
+        if (found.irregular.empty()) {
+            out.zeros = found.zeros;
+            return out;
+        }
+        if (last) {
+            fail(fmt::format(
+                "zeros: {} vertices are extrema of the conjugate function, the first "
+                "near ({:.4g}, {:.4g}, {:.4g}); remesh the model there",
+                found.irregular.size(), out.surface.mesh.positions[at(found.irregular.front())].x(),
+                out.surface.mesh.positions[at(found.irregular.front())].y(),
+                out.surface.mesh.positions[at(found.irregular.front())].z()));
+        }
+        solve_whole(split_edges(std::move(out.surface), edges_near(out.surface, found.irregular)),
+                    out);
+    }
+}
+
+// The chart of one part: f from 0 to 1.
+void add_part(Foliation& foliation,
+              const FormPart& part,
+              const std::vector<int>& source_vertex,
+              const FoliationOptions& options,
+              const Context& context) {
+    Foliation chart = foliate_rectangle(part.mesh, part.loop, part.corners, options, context);
+    Cylinder& cylinder = chart.cylinders.front();
+    cylinder.graph_edge = static_cast<int>(foliation.cylinders.size());
+    for (int& source : cylinder.source_vertex) {
+        source = source < 0 ? -1 : source_vertex[at(part.source_vertex[at(source)])];
+    }
+    for (const std::string& warning : chart.warnings) {
+        foliation.warnings.push_back(fmt::format("part {}: {}", cylinder.graph_edge, warning));
+    }
+    foliation.graph.edges.push_back({0, 1, 1.0});
+    foliation.cylinders.push_back(std::move(cylinder));
+}
+
+double area_of(const TriangleMesh& mesh) {
+    double area = 0.0;
+    for (const auto& t : mesh.triangles) {
+        const Eigen::Vector3d& a = mesh.positions[at(t[0])];
+        area += 0.5 * (mesh.positions[at(t[1])] - a).cross(mesh.positions[at(t[2])] - a).norm();
+    }
+    return area;
+}
+
+// All parts together are the surface, and their widths its flux.
+void check_whole(const Foliation& foliation, const SolvedForm& solved, double area) {
+    double covered = 0.0;
+    double width = 0.0;
+    for (const Cylinder& cylinder : foliation.cylinders) {
+        covered += area_of(cylinder.mesh);
+        width += cylinder.width;
+    }
+    if (!(std::abs(covered - area) <= 1e-6 * area)) {
+        fail(fmt::format("parts: they cover {:.6g} of an area of {:.6g}", covered, area));
+    }
+    if (!(std::abs(width / solved.form.flux - 1.0) <= kMostFluxError)) {
+        fail(
+            fmt::format("parts: their widths add up to {:.4g}, but the flux is {:.4g}: the mesh "
+                        "is too coarse; refine it",
+                        width, solved.form.flux));
+    }
+}
+
+void warn_of_errors(Foliation& foliation, const SolvedForm& solved, double worst_turn) {
+    const double gap = solved.form.conjugate / solved.form.flux - 1.0;
+    if (gap > kNotableError) {
+        foliation.warnings.push_back(
+            fmt::format("the mesh is coarse for its one-form: the flux is certain to {:.1f} % "
+                        "only, so neighbouring parts may not fit; refine the mesh",
+                        100.0 * gap));
+    }
+    if (worst_turn > kMostTurn) {
+        foliation.warnings.push_back(
+            fmt::format("a line between two parts turns back by {:.1f} % of the way from source "
+                        "to sink; refine the mesh",
+                        100.0 * worst_turn));
+    }
+}
+
+void add_singularities(Foliation& foliation, const CutSurface& cut) {
+    for (const FormZero& zero : cut.zeros) {
+        if (cut.surface.lines[at(zero.vertex)] == 0) {
+            foliation.singularities.push_back(
+                {cut.surface.mesh.positions[at(zero.vertex)], zero.lines});
+        }
+    }
+}
+
+Foliation between_two_loops(const TriangleMesh& mesh,
+                            const std::array<std::vector<int>, 2>& loops,
+                            const FoliationOptions& options,
+                            const Context& context) {
+    Foliation foliation = foliate_ring(mesh, loops, options, context);
+    foliation.mode = FoliationMode::OneForm;
+    foliation.spread = cell_spread(foliation.cylinders);
+    return foliation;
+}
+
+}  // namespace
+
+Foliation foliate_one_form(const TriangleMesh& mesh,
+                           const std::vector<std::vector<int>>& loops,
+                           const std::vector<int>& sources,
+                           const std::vector<int>& sinks,
+                           const FoliationOptions& options,
+                           const Context& context) {
+    const std::vector<std::uint8_t> kinds = loop_kinds(loops.size(), sources, sinks);
+    std::vector<std::uint8_t> lines(mesh.positions.size(), 0);
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+        for (const int v : loops[k]) {
+            lines[at(v)] = kinds[k];
+        }
+    }
+    ChartSurface start = start_surface(mesh, std::move(lines));
+    const int euler = euler_characteristic(start.edges, start.mesh.positions.size());
+    if (euler == 0) {
+        return between_two_loops(mesh, {loops[at(sources.front())], loops[at(sinks.front())]},
+                                 options, context);
+    }
+    const SolvedForm solved = solve_form(std::move(start), options.refinement, context);
+    check_orders(solved, euler);
+    context.report("foliation", 0.4);
+    const CutSurface cut = cut_along_leaves(solved.surface, solved.form, solved.zeros, context);
+    const std::vector<FormPart> parts = separate_parts(cut);
+    context.report("foliation", 0.5);
+
+    Foliation foliation;
+    foliation.mode = FoliationMode::OneForm;
+    foliation.graph.nodes = 2;
+    foliation.energy = 0.5 * solved.form.flux;
+    foliation.iterations = 1;
+    add_singularities(foliation, cut);
+    foliation.critical_graph = cut_lines(cut);
+    Context quiet = context;
+    quiet.progress = nullptr;
+    for (const FormPart& part : parts) {
+        add_part(foliation, part, cut.surface.source_vertex, options, quiet);
+        context.report("foliation", 0.5 + 0.5 * static_cast<double>(foliation.cylinders.size()) /
+                                              static_cast<double>(parts.size()));
+    }
+    check_whole(foliation, solved, area_of(mesh));
+    warn_of_errors(foliation, solved, cut.worst_turn);
+    foliation.spread = cell_spread(foliation.cylinders);
+    return foliation;
 }
 
 }  // namespace leafcutter::geometry
