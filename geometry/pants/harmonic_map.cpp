@@ -10,8 +10,8 @@
 namespace leafcutter::geometry {
 namespace {
 
-constexpr int kMostIterations = 80;
-constexpr int kColdSweeps = 50;
+constexpr int kMostIterations = 40;
+constexpr int kColdSweeps = 8;
 constexpr int kWarmSweeps = 1;
 constexpr int kRescueSweeps = 5;
 constexpr int kHalvings = 8;

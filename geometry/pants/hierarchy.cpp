@@ -313,7 +313,7 @@ std::vector<CoarseMap> solve_candidate(const Hierarchy::Level& level,
     solved.back().name = candidate.name + ", weights by length";
     GraphMap second = solved.back().map;
     set_weights(second, std::vector<double>(second.graph.edges.size(), 1.0));
-    solved.push_back(solve_one(level, std::move(second), MapStart::Cold, context));
+    solved.push_back(solve_one(level, std::move(second), MapStart::Warm, context));
     solved.back().name = candidate.name + ", equal weights";
     return solved;
 }
@@ -329,7 +329,7 @@ CoarseMap with_even_cells(const Hierarchy::Level& level,
     for (int step = 0; step < kEveningSteps; ++step) {
         GraphMap map = last.map;
         set_weights(map, evened_weights(last, level, power));
-        last = solve_one(level, std::move(map), MapStart::Cold, context);
+        last = solve_one(level, std::move(map), MapStart::Warm, context);
         last.name = start.name + ", evened";
         if (!(last.score < best.score)) {
             break;
@@ -352,7 +352,7 @@ std::vector<CoarseMap> with_weights(const Hierarchy::Level& level,
         GraphMap map = std::move(automatic[i].map);
         set_weights(map, weights);
         std::string name = std::move(automatic[i].name);
-        automatic[i] = solve_one(level, std::move(map), MapStart::Cold, own);
+        automatic[i] = solve_one(level, std::move(map), MapStart::Warm, own);
         automatic[i].name = std::move(name);
     });
     return automatic;
@@ -398,8 +398,13 @@ std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
     const std::vector<PantsCandidate> candidates =
         candidates_of(level, std::move(lines), options, context);
     std::vector<std::vector<CoarseMap>> of_candidate(candidates.size());
+    std::vector<std::string> failures(candidates.size());
     for_each_task(candidates.size(), context, [&](std::size_t i, const Context& own) {
-        of_candidate[i] = solve_candidate(level, candidates[i], distance, own);
+        try {
+            of_candidate[i] = solve_candidate(level, candidates[i], distance, own);
+        } catch (const Error& error) {
+            failures[i] = error.what();  // Others may do.
+        }
     });
     std::vector<CoarseMap> all;
     for (std::vector<CoarseMap>& some : of_candidate) {
@@ -407,7 +412,11 @@ std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
     }
     std::stable_sort(all.begin(), all.end(),
                      [](const CoarseMap& a, const CoarseMap& b) { return a.score < b.score; });
-    if (!all.empty()) {
+    if (all.empty()) {
+        throw Error(ErrorKind::SelfCheck, "no-map",
+                    fmt::format("harmonic map: {}", fmt::join(failures, "; ")));
+    }
+    {
         std::array<CoarseMap, kEveningPowers.size()> evened;
         for_each_task(evened.size(), context, [&](std::size_t i, const Context& own) {
             evened[i] = with_even_cells(level, all.front(), kEveningPowers[i], own);
