@@ -18,10 +18,12 @@ std::vector<std::vector<int>> outgoing_half_edges(const HalfEdges& edges, int ve
     return outgoing;
 }
 
-// Marks both half-edges of every edge of a breadth-first tree over the vertices.
-std::vector<char> vertex_tree(const HalfEdges& edges, int vertex_count) {
+// A breadth-first tree over the vertices. Marks both half-edges of its edges in `in_tree`; returns
+// each vertex's parent, -1 for the root.
+std::vector<int> vertex_tree(const HalfEdges& edges, int vertex_count, std::vector<char>& in_tree) {
     const auto outgoing = outgoing_half_edges(edges, vertex_count);
-    std::vector<char> in_tree(edges.from.size(), 0);
+    in_tree.assign(edges.from.size(), 0);
+    std::vector<int> parent(at(vertex_count), -1);
     std::vector<char> reached(at(vertex_count), 0);
     std::vector<int> queue{edges.from_of(0)};
     reached[at(queue.front())] = 1;
@@ -32,12 +34,33 @@ std::vector<char> vertex_tree(const HalfEdges& edges, int vertex_count) {
                 continue;
             }
             reached[at(to)] = 1;
+            parent[at(to)] = queue[i];
             in_tree[at(h)] = 1;
             in_tree[at(edges.twin_of(h))] = 1;
             queue.push_back(to);
         }
     }
-    return in_tree;
+    return parent;
+}
+
+// From `a` up the tree to where `b` is below too, and down to `b`.
+std::vector<int> tree_path(const std::vector<int>& parent, int a, int b) {
+    const auto to_root = [&](int v) {
+        std::vector<int> path;
+        for (; v >= 0; v = parent[at(v)]) {
+            path.push_back(v);
+        }
+        return path;
+    };
+    std::vector<int> up = to_root(a);
+    std::vector<int> down = to_root(b);
+    while (up.size() > 1 && down.size() > 1 && up[up.size() - 2] == down[down.size() - 2]) {
+        up.pop_back();
+        down.pop_back();
+    }
+    down.pop_back();
+    up.insert(up.end(), down.rbegin(), down.rend());
+    return up;
 }
 
 // Per triangle the half-edge it leaves for its parent by, in a breadth-first tree over the
@@ -73,10 +96,11 @@ void cross(const HalfEdges& edges, Cochain& cochain, int leaving, int times) {
 
 }  // namespace
 
-std::vector<Cochain> cohomology_basis(const HalfEdges& edges, int vertex_count) {
-    std::vector<char> used = vertex_tree(edges, vertex_count);
+DualBasis dual_basis(const HalfEdges& edges, int vertex_count) {
+    std::vector<char> used;
+    const std::vector<int> parent = vertex_tree(edges, vertex_count, used);
     const std::vector<int> exit_of = triangle_tree(edges, used);
-    std::vector<Cochain> basis;
+    DualBasis basis;
     for (int h = 0; h < edges.size(); ++h) {
         if (used[at(h)] != 0 || !edges.is_first(h)) {
             continue;
@@ -93,9 +117,14 @@ std::vector<Cochain> cohomology_basis(const HalfEdges& edges, int vertex_count) 
              exit = exit_of[at(edges.twin_of(exit) / 3)]) {
             cross(edges, cochain, exit, -1);
         }
-        basis.push_back(std::move(cochain));
+        basis.cochains.push_back(std::move(cochain));
+        basis.cycles.push_back(tree_path(parent, edges.to_of(twin), edges.from_of(twin)));
     }
     return basis;
+}
+
+std::vector<Cochain> cohomology_basis(const HalfEdges& edges, int vertex_count) {
+    return dual_basis(edges, vertex_count).cochains;
 }
 
 Cochain arc_cochain(const HalfEdges& edges,

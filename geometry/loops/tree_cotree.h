@@ -18,6 +18,14 @@ using Cochain = std::vector<int>;
 // A basis of the first integer cohomology of a closed connected surface: 2 x genus cochains.
 std::vector<Cochain> cohomology_basis(const HalfEdges& edges, int vertex_count);
 
+// The same, each with a cycle of vertices on which its value is 1 and all others' are 0: a basis of
+// the first homology.
+struct DualBasis {
+    std::vector<Cochain> cochains;
+    std::vector<std::vector<int>> cycles;  // Simple, along edges.
+};
+DualBasis dual_basis(const HalfEdges& edges, int vertex_count);
+
 // Crossings with one arc of triangles that enters through the boundary loop of `from` and leaves
 // through that of `to`; `loop_of_vertex` is -1 in the interior. Generates the cohomology of an
 // annulus.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "geometry/disjoint_sets.h"
+#include "geometry/loops/edge_paths.h"
 #include "geometry/pants/draw_onto.h"
 
 namespace leafcutter::geometry {
@@ -335,15 +336,6 @@ GraphMap sweep_map(const ReebGraph& reeb, const PantsGraph& pants) {
     return map;
 }
 
-int edge_between(const VertexRings& rings, int a, int b) {
-    for (int k = rings.begin[at(a)]; k < rings.begin[at(a) + 1]; ++k) {
-        if (rings.slots[at(k)].neighbour == b) {
-            return rings.slots[at(k)].edge;
-        }
-    }
-    throw Error(ErrorKind::SelfCheck, "broken-tree", "pants: the sweep mesh isn't the surface's");
-}
-
 // The map of the surface: added vertices are drawn onto their owners, caps are left out.
 GraphMap without_added(const SweepMesh& mesh, GraphMap swept, const VertexRings& rings) {
     for (std::size_t v = mesh.owner.size(); v-- > at(mesh.surface_vertices);) {
@@ -366,7 +358,7 @@ GraphMap without_added(const SweepMesh& mesh, GraphMap swept, const VertexRings&
         if (a < 0 || b < 0 || a == b) {
             continue;
         }
-        const std::size_t edge = at(edge_between(rings, a, b));
+        const std::size_t edge = at(find_edge(rings, a, b));
         Word word =
             rings.edges[edge].from == a ? std::move(swept.words[e]) : reversed(swept.words[e]);
         if (known[edge] != 0 && map.words[edge] != word) {
