@@ -197,12 +197,14 @@ std::vector<FormPart> separate_parts(const CutSurface& cut) {
             triangle[at(k)] = name;
         }
         part.mesh.triangles.push_back(triangle);
+        part.source_triangle.push_back(t);
     }
     for (std::size_t p = 0; p < parts.size(); ++p) {
         const Outline& outline = division.outlines[p];
         for (const int h : outline.walk) {
             parts[p].loop.push_back(vertex_of_corner[corners.find(id(h))]);
         }
+        parts[p].loop_edge = outline.walk;
         parts[p].corners = {outline.first_bottom, outline.first_right, outline.first_top,
                             outline.first_left};
         parts[p].flux = outline.flux;

@@ -13,10 +13,12 @@ namespace leafcutter::geometry {
 struct FormPart {
     TriangleMesh mesh;               // Points on a cut have a copy for each side.
     std::vector<int> source_vertex;  // Of the cut surface.
-    std::vector<int> loop;           // Its boundary, surface to the left.
-    std::array<int, 4> corners{};    // Places in `loop`: the ends of the source side, then those of
-                                     // the sink side.
-    double flux = 0.0;               // Rise of g along the source side.
+    std::vector<int> source_triangle;
+    std::vector<int> loop;         // Its boundary, surface to the left,
+    std::vector<int> loop_edge;    // and the half-edges of the cut surface along it.
+    std::array<int, 4> corners{};  // Places in `loop`: the ends of the source side, then those of
+                                   // the sink side.
+    double flux = 0.0;             // Rise of g along the source side.
 };
 
 // In the order of their source sides along the boundary.
