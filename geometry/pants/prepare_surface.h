@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "geometry/context.h"
 #include "geometry/foliation.h"
 #include "geometry/pants/level.h"
 
@@ -21,6 +22,7 @@ struct PreparedSurface {
 PreparedSurface prepare_surface(const TriangleMesh& mesh,
                                 const std::vector<std::vector<int>>& boundary_loops,
                                 const std::vector<std::vector<int>>& cuts,
-                                Refinement refinement);
+                                Refinement refinement,
+                                const Context& context);
 
 }  // namespace leafcutter::geometry
