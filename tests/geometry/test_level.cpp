@@ -20,6 +20,7 @@
 #include "geometry/half_edges.h"
 #include "geometry/harmonic/chart_surface.h"
 #include "geometry/io/read_mesh.h"
+#include "geometry/laplacian.h"
 #include "geometry/mesh.h"
 #include "geometry/pants/harmonic_map.h"
 #include "geometry/pants/initial_map.h"
@@ -312,6 +313,192 @@ TEST_P(Level, FlipsEndDelaunayAndSimplicial) {
     }
     EXPECT_NEAR(area / expected, 1.0, 1e-3);
     EXPECT_LE(flipped.forced_weights, static_cast<int>(rings.edges.size() / 500));
+}
+
+// --- maps -------------------------------------------------------------------------------------
+
+// A surface with its flipped triangles.
+struct Flat {
+    LinedSurface surface;
+    VertexRings rings;
+    FlippedSurface flipped;
+};
+
+Flat flat(LinedSurface surface) {
+    Flat out{std::move(surface), {}, {}};
+    out.rings = rings_of(out.surface.mesh);
+    out.flipped = flip_to_delaunay(out.surface, out.rings);
+    return out;
+}
+
+// A first map of the surface as it is, from the Reeb graph of a coordinate.
+GraphMap first_map(const LinedSurface& surface, int axis) {
+    std::vector<double> values;
+    for (const Eigen::Vector3d& p : surface.mesh.positions) {
+        values.push_back(p[axis]);
+    }
+    const Loops loops = boundary_loops(surface.mesh);
+    std::vector<char> low(loops.size(), 0);
+    if (!loops.empty()) {
+        low.front() = 1;
+    }
+    const ReebGraph reeb = build_reeb_graph(surface.mesh.triangles, values, loops, low);
+    return initial_map(reeb, rings_of(surface.mesh), loops);
+}
+
+std::vector<double> weights_of(const TriangleMesh& mesh) {
+    std::vector<double> weights;
+    for (const WeightedEdge& edge :
+         positive_edges(mesh, build_half_edges(mesh.triangles, count_of(mesh)), 1e-3)) {
+        weights.push_back(edge.weight);
+    }
+    return weights;
+}
+
+double solve(GraphMap& map, const VertexRings& rings, const std::vector<double>& weights) {
+    return solve_harmonic_map(map, rings, weights, MapStart::Cold, {}).energy;
+}
+
+// Carries a map forwards to the flipped surface: the flips that are taken back are the flips back.
+void carry_forwards(GraphMap& map, const Flat& flat) {
+    FlippedSurface before;
+    before.rings = flat.rings;
+    before.flips.assign(flat.flipped.flips.rbegin(), flat.flipped.flips.rend());
+    undo_flips(map, before, flat.surface, flat.flipped.rings);
+}
+
+// The words round every triangle are those of three points of a tree: no one or both of two sides
+// pass a node, and no side is longer than the others together.
+void expect_tree(const GraphMap& map, const VertexRings& rings) {
+    for (std::size_t h = 0; h < rings.edge_of_half_edge.size(); h += 3) {
+        std::array<double, 3> side{};
+        int cut = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int e = rings.edge_of_half_edge[h + k];
+            const MeshEdge& edge = rings.edges[at(e)];
+            const Word& word = map.words[at(e)];
+            ASSERT_NE(word.size(), 1U);
+            if (!word.empty()) {
+                EXPECT_EQ(edge_of(word.front()), map.graph_edge[at(edge.from)]);
+                EXPECT_EQ(edge_of(word.back()), map.graph_edge[at(edge.to)]);
+            }
+            cut += word.empty() ? 0 : 1;
+            side[k] = map.distance(edge.from, edge.to, word);
+        }
+        EXPECT_NE(cut, 1) << h / 3;
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_LE(side[k], side[(k + 1) % 3] + side[(k + 2) % 3] + 1e-9) << h / 3;
+        }
+    }
+}
+
+// A fine surface and one of a quarter of its vertices, with a first map of the coarse one.
+struct TwoLevels {
+    Flat fine;
+    Flat coarse;
+    std::vector<int> representative;
+    GraphMap first;
+};
+
+TwoLevels two_levels(const Lined& whole, int axis) {
+    constexpr std::size_t kFine = 6000;
+    LinedSurface start = whole.surface;
+    if (start.mesh.positions.size() > kFine) {
+        start = coarsen(start, {.target_vertices = kFine}, {}).surface;
+    }
+    TwoLevels out;
+    out.fine = flat(std::move(start));
+    const std::size_t count = out.fine.surface.mesh.positions.size();
+    Coarser coarser = coarsen(flipped_surface(out.fine.surface, out.fine.flipped),
+                              {.target_vertices = std::max<std::size_t>(count / 4, 1200)}, {});
+    out.coarse = flat(std::move(coarser.surface));
+    out.representative = std::move(coarser.representative);
+    out.first = first_map(out.coarse.surface, axis);
+    return out;
+}
+
+double refined_energy(const GraphMap& coarse, const TwoLevels& levels) {
+    const VertexRings& rings = levels.fine.flipped.rings;
+    GraphMap map = prolong(coarse, levels.coarse.rings, levels.representative, rings);
+    EXPECT_EQ(std::count(map.fixed.begin(), map.fixed.end(), 1),
+              std::count_if(levels.fine.surface.line_of_vertex.begin(),
+                            levels.fine.surface.line_of_vertex.end(),
+                            [](int line) { return line >= 0; }));
+    expect_tree(map, rings);
+    return solve(map, rings, levels.fine.flipped.weights);
+}
+
+class MapLevel : public Level {};
+class CutLevel : public Level {};
+
+// Boot, of genus 12, has too many cylinders for a coarse level as small as this test's: its first
+// map is only good for cutting.
+INSTANTIATE_TEST_SUITE_P(Surfaces,
+                         CutLevel,
+                         ::testing::Values(Case{"boot", [] { return shared_model("boot.obj"); }}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+INSTANTIATE_TEST_SUITE_P(
+    Surfaces,
+    MapLevel,
+    ::testing::Values(Case{"eight", [] { return make_sample("eight", 6000); }},
+                      Case{"doubletorus", [] { return make_sample("double-torus", 6000); }},
+                      Case{"holes", sphere_with_holes},
+                      Case{"needles", needles},
+                      Case{"fertility", [] { return shared_model("fertility.off"); }},
+                      Case{"hand", [] { return shared_model("hand-6-boundaries.obj"); }}),
+    [](const auto& tested) { return std::string(tested.param.name); });
+
+// The energy at the minimum tells the class: it must be the same whichever way a first map is
+// carried to the fine surface.
+TEST_P(MapLevel, KeepsItsClassOnAllWaysToTheFineSurface) {
+    for (const int axis : {0, 2}) {
+        SCOPED_TRACE(axis);
+        const TwoLevels levels = two_levels(whole_, axis);
+        const Flat& coarse = levels.coarse;
+        const double direct = refined_energy(levels.first, levels);
+
+        GraphMap map = levels.first;
+        solve(map, coarse.rings, weights_of(coarse.surface.mesh));
+        EXPECT_NEAR(refined_energy(map, levels) / direct, 1.0, 1e-9);
+
+        carry_forwards(map, coarse);
+        expect_tree(map, coarse.flipped.rings);
+        const double energy = solve(map, coarse.flipped.rings, coarse.flipped.weights);
+        expect_tree(map, coarse.flipped.rings);
+        undo_flips(map, coarse.flipped, coarse.surface, coarse.rings);
+        expect_tree(map, coarse.rings);
+        EXPECT_NEAR(refined_energy(map, levels) / direct, 1.0, 1e-9);
+
+        carry_forwards(map, coarse);
+        EXPECT_NEAR(map_energy(map, coarse.flipped.rings, coarse.flipped.weights) / energy, 1.0,
+                    1e-12);
+    }
+}
+
+void expect_annuli(const Lined& whole) {
+    const TwoLevels levels = two_levels(whole, 2);
+    GraphMap map = prolong(levels.first, levels.coarse.rings, levels.representative,
+                           levels.fine.flipped.rings);
+    solve(map, levels.fine.flipped.rings, levels.fine.flipped.weights);
+    undo_flips(map, levels.fine.flipped, levels.fine.surface, levels.fine.rings);
+    expect_tree(map, levels.fine.rings);
+    TriangleMesh mesh = levels.fine.surface.mesh;
+    VertexRings rings = levels.fine.rings;
+    while (split_long_edges(mesh, rings, map) > 0) {
+    }
+    const Sliced sliced = slice_surface(mesh, rings, map);  // Throws where a piece is no annulus.
+    const int loops = static_cast<int>(whole.loops.size());
+    const int genus = (2 - loops - euler_of(mesh)) / 2;
+    EXPECT_EQ(static_cast<int>(sliced.pieces.size()), 3 * genus - 3 + 2 * loops);
+}
+
+TEST_P(MapLevel, IsCutIntoAnnuliAfterFlipsAreUndone) {
+    expect_annuli(whole_);
+}
+
+TEST_P(CutLevel, IsCutIntoAnnuliAfterFlipsAreUndone) {
+    expect_annuli(whole_);
 }
 
 }  // namespace
