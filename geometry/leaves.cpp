@@ -230,6 +230,86 @@ private:
     std::vector<bool> passed_;               // Per segment: one level in one triangle.
 };
 
+// Leaves of F* on a pillowcase go on over its folds, there and back, until they are closed or come
+// to a singular point. `columns` has one leaf for each column of the grid, upwards.
+class FoldedLeaves {
+public:
+    FoldedLeaves(std::vector<Leaf> columns, const CylinderGrid& grid)
+        : columns_(std::move(columns)),
+          count_(grid.cols),
+          shift_(grid.column_shift),
+          joined_(columns_.size(), false) {}
+
+    std::vector<Leaf> join() {
+        std::vector<Leaf> leaves;
+        // From singular point to singular point: of the lower fold first, then of the upper.
+        for (const bool up : {true, false}) {
+            for (const int begin : {up ? 0 : shift_, (up ? 0 : shift_) + count_ / 2}) {
+                const int column = wrapped(begin);
+                if (!joined_[static_cast<std::size_t>(column)]) {
+                    leaves.push_back(joined_from(column, up));
+                }
+            }
+        }
+        for (int column = 0; column < count_; ++column) {
+            if (!joined_[static_cast<std::size_t>(column)]) {
+                leaves.push_back(joined_from(column, true));
+            }
+        }
+        std::stable_sort(leaves.begin(), leaves.end(),
+                         [](const Leaf& a, const Leaf& b) { return a.level < b.level; });
+        return leaves;
+    }
+
+private:
+    int wrapped(int column) const { return ((column % count_) + count_) % count_; }
+
+    Leaf joined_from(int begin, bool up) {
+        Leaf leaf = columns_[static_cast<std::size_t>(begin)];
+        leaf.points.clear();
+        int column = begin;
+        while (true) {
+            joined_[static_cast<std::size_t>(column)] = true;
+            const std::vector<Vector3d>& points = columns_[static_cast<std::size_t>(column)].points;
+            leaf.level = std::min(leaf.level, columns_[static_cast<std::size_t>(column)].level);
+            // Its first point lies on the fold, where the last one was.
+            const std::ptrdiff_t skip = leaf.points.empty() ? 0 : 1;
+            if (up) {
+                leaf.points.insert(leaf.points.end(), points.begin() + skip, points.end());
+            } else {
+                leaf.points.insert(leaf.points.end(), points.rbegin() + skip, points.rend());
+            }
+            const int next = wrapped((up ? 2 * shift_ : 0) - column);
+            if (next == column) {
+                return leaf;  // At a singular point.
+            }
+            up = !up;
+            column = next;
+            if (joined_[static_cast<std::size_t>(column)]) {
+                leaf.closed = true;
+                leaf.points.pop_back();  // Where it began.
+                return leaf;
+            }
+        }
+    }
+
+    std::vector<Leaf> columns_;
+    int count_;
+    int shift_;
+    std::vector<bool> joined_;
+};
+
+// Leaves of F that lie on the folds are the critical arcs, not rings.
+void replace_folds(std::vector<Leaf>& leaves, const Foliation& foliation, double height) {
+    for (Leaf& leaf : leaves) {
+        const bool upper = leaf.level >= height;
+        if ((upper || leaf.level <= 0.0) && foliation.critical_graph.size() == 2) {
+            leaf.closed = false;
+            leaf.points = foliation.critical_graph[upper ? 1 : 0];
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<Leaf> sample_leaves(const Foliation& foliation, const QuadMesh& quads, int stride) {
@@ -240,6 +320,11 @@ std::vector<Leaf> sample_leaves(const Foliation& foliation, const QuadMesh& quad
         const ChartGrid grid(chart, quads.grids[i]);
         for (const Axis axis : {Axis::F, Axis::G}) {
             std::vector<Leaf> leaves = LeafTracer(chart, grid, axis).trace_all();
+            if (grid.has_folds() && axis == Axis::G) {
+                leaves = FoldedLeaves(std::move(leaves), quads.grids[i]).join();
+            } else if (grid.has_folds()) {
+                replace_folds(leaves, foliation, chart.height);
+            }
             for (std::size_t k = 0; k < leaves.size(); k += every) {
                 leaves[k].cylinder = static_cast<int>(i);
                 kept.push_back(std::move(leaves[k]));

@@ -66,7 +66,8 @@ public:
     SampledChart(const Cylinder& chart, const CylinderGrid& even, const ChartSampler& sampler)
         : grid_(chart, refined(even)) {
         for (int row = 0; row < grid_.vertex_rows(); ++row) {
-            for (int col = 0; col < grid_.vertex_cols(); ++col) {
+            const int end = grid_.first_col(row) + grid_.vertices_in(row);
+            for (int col = grid_.first_col(row); col < end; ++col) {
                 points_.push_back(
                     sampler.point(grid_.unstraight({grid_.s_level(col), grid_.f_level(row)})));
             }
@@ -215,6 +216,9 @@ std::vector<CylinderGrid> curvature_grids(const Cylinder& chart,
         // Columns that are shifted into one another stay even.
         if (even.column_shift == 0) {
             grid.g_levels = regraded(even.g_levels, densities(sampled, Axis::G, rule, spacing));
+            if (chart.shape == ChartShape::Pillowcase) {
+                grid.g_levels = folded_levels(grid.g_levels);
+            }
         }
         grids.push_back(std::move(grid));
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -21,6 +22,9 @@ constexpr double kAlignedDeg = 1.0;
 // Weight of the slant against the logarithms of aspect and cell count: 1 degree is as bad as a cell
 // 7 % too long.
 constexpr double kSlantWeight = 4.0;
+// Pillowcase: a column that comes back to itself after one round more is as bad as a cell 7 % too
+// long; ten times as many rounds, as one 26 % too long.
+constexpr double kRoundsWeight = 0.1;
 
 double square(double x) {
     return x * x;
@@ -50,8 +54,10 @@ Least least_counts(ChartShape shape, Parity parity) {
     switch (shape) {
         case ChartShape::Rectangle:
             return {};
-        case ChartShape::Annulus:
         case ChartShape::Pillowcase:
+            // Fewer rows double the edges next to singular points.
+            return {.rows = 2, .cols = 4, .even_cols = true};
+        case ChartShape::Annulus:
             return {.rows = 1, .cols = even ? 4 : 3, .even_cols = even};
         case ChartShape::Torus:
             return {.rows = 3, .cols = even ? 4 : 3, .even_cols = even};
@@ -59,18 +65,22 @@ Least least_counts(ChartShape shape, Parity parity) {
     return {};
 }
 
-void check_fixed(const RowsCols& counts, const Least& least, const std::string& path) {
+void check_fixed(const RowsCols& counts,
+                 const Least& least,
+                 ChartShape shape,
+                 const std::string& path) {
+    const char* even_advice = shape == ChartShape::Pillowcase
+                                  ? ", and an even number"
+                                  : ", and an even number (or grid.parity any)";
     if (counts.rows && *counts.rows < least.rows) {
         throw Error(ErrorKind::BadOption, "too-few-rows",
                     fmt::format("{}.rows: {} can't carry the surface; use at least {}", path,
                                 *counts.rows, least.rows));
     }
     if (counts.cols && (*counts.cols < least.cols || (least.even_cols && *counts.cols % 2 != 0))) {
-        throw Error(
-            ErrorKind::BadOption, "bad-cols",
-            fmt::format("{}.cols: {} can't close a ring; use at least {}{}", path, *counts.cols,
-                        least.cols,
-                        least.even_cols ? ", and an even number (or grid.parity any)" : ""));
+        throw Error(ErrorKind::BadOption, "bad-cols",
+                    fmt::format("{}.cols: {} can't close a ring; use at least {}{}", path,
+                                *counts.cols, least.cols, least.even_cols ? even_advice : ""));
     }
 }
 
@@ -102,18 +112,32 @@ struct Candidate {
     double cost = 0.0;
 };
 
-// Whole column shifts to consider for a torus of `cols` columns: none if it is (nearly) square on.
+bool is_slanted(ChartShape shape) {
+    return shape == ChartShape::Torus || shape == ChartShape::Pillowcase;
+}
+
+// Whole column shifts to consider for a slanted chart of `cols` columns: none if it is (nearly)
+// square on.
 std::vector<int> shifts_near(const Cylinder& chart, int cols) {
     const bool aligned = std::abs(degrees(std::atan2(chart.shear, chart.height))) <= kAlignedDeg;
-    if (chart.shape != ChartShape::Torus || aligned) {
+    if (!is_slanted(chart.shape) || aligned) {
         return {0};
     }
     const int low = static_cast<int>(std::floor(chart.shear * cols / chart.width));
+    if (chart.shape == ChartShape::Pillowcase) {
+        return {0, low, low + 1};
+    }
     return {low, low + 1};
 }
 
 double slant_of(const Cylinder& chart, int cols, int shift) {
     return (chart.shear - shift * chart.width / cols) / chart.height;
+}
+
+// How many times a thread along a column goes up and down a pillowcase before it closes: each time
+// it comes back 2 x shift columns aside.
+int rounds_of(ChartShape shape, int cols, int shift) {
+    return shape == ChartShape::Pillowcase ? cols / std::gcd(cols, 2 * shift) : 1;
 }
 
 // Where columns are shifted into one another, only even ones fit.
@@ -152,9 +176,10 @@ Candidate best_candidate(const Cylinder& chart,
                     continue;
                 }
                 const double count = static_cast<double>(rows) * cols;
-                const double cost = square(std::log(count / cells)) +
-                                    square(std::log(aspect * cols / rows)) +
-                                    square(kSlantWeight * slant_of(chart, cols, shift));
+                const double cost =
+                    square(std::log(count / cells)) + square(std::log(aspect * cols / rows)) +
+                    square(kSlantWeight * slant_of(chart, cols, shift)) +
+                    square(kRoundsWeight * std::log(rounds_of(chart.shape, cols, shift)));
                 if (best.rows == 0 || cost < best.cost) {
                     best = {.rows = rows, .cols = cols, .shift = shift, .cost = cost};
                 }
@@ -164,20 +189,38 @@ Candidate best_candidate(const Cylinder& chart,
     return best;
 }
 
-// A torus that is only slanted by its own angle, not by rounding: said as that angle.
+// A chart that is only slanted by its own angle, not by rounding: said as that angle.
 double shear_deg(const Cylinder& chart, const Candidate& chosen) {
-    return chart.shape == ChartShape::Torus
-               ? degrees(std::atan(slant_of(chart, chosen.cols, chosen.shift)))
-               : 0.0;
+    return is_slanted(chart.shape) ? degrees(std::atan(slant_of(chart, chosen.cols, chosen.shift)))
+                                   : 0.0;
+}
+
+std::vector<double> column_levels(const Cylinder& chart,
+                                  const LevelScale& scale,
+                                  const Candidate& chosen) {
+    if (chosen.shift != 0) {
+        return even_levels(chart.width, chosen.cols);
+    }
+    std::vector<double> levels = scale.levels(chosen.cols);
+    return chart.shape == ChartShape::Pillowcase ? folded_levels(levels) : levels;
 }
 
 }  // namespace
 
+std::vector<double> folded_levels(const std::vector<double>& levels) {
+    std::vector<double> folded;
+    folded.reserve(levels.size());
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        folded.push_back(0.5 * (levels[i] + levels.back() - levels[levels.size() - 1 - i]));
+    }
+    return folded;
+}
+
 CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
     const Least least = least_counts(chart.shape, wish.parity);
-    check_fixed(wish.counts, least, wish.path);
+    check_fixed(wish.counts, least, chart.shape, wish.path);
     const LevelScale f_scale(chart, Axis::F, 0.0);
-    const double own_slant = chart.shape == ChartShape::Torus ? chart.shear / chart.height : 0.0;
+    const double own_slant = is_slanted(chart.shape) ? chart.shear / chart.height : 0.0;
     const LevelScale g_scale(chart, Axis::G, own_slant);
     const Candidate chosen =
         best_candidate(chart, f_scale.total_mm() / g_scale.total_mm(), wish, least);
@@ -194,15 +237,18 @@ CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
             .column_shift = chosen.shift,
             .shear_deg = shear_deg(chart, chosen),
             .f_levels = f_scale.levels(chosen.rows),
-            .g_levels = chosen.shift == 0 ? g_scale.levels(chosen.cols)
-                                          : even_levels(chart.width, chosen.cols)};
+            .g_levels = column_levels(chart, g_scale, chosen)};
 }
 
 ChartGrid::ChartGrid(const Cylinder& chart, CylinderGrid grid)
     : grid_(std::move(grid)), width_(chart.width), height_(chart.height) {
-    if (closed_along()) {
+    if (is_slanted(grid_.shape)) {
         slant_ = slant_of(chart, grid_.cols, grid_.column_shift);
     }
+}
+
+int ChartGrid::vertices_in(int row) const {
+    return on_fold(row) ? grid_.cols / 2 + 1 : grid_.cols + (closed_across() ? 0 : 1);
 }
 
 int ChartGrid::vertex(int row, int col) const {
@@ -211,10 +257,15 @@ int ChartGrid::vertex(int row, int col) const {
         row -= turns * grid_.rows;
         col -= turns * grid_.column_shift;
     }
+    const int before = row == 0 ? 0 : vertices_in(0) + (row - 1) * vertices_in(1);
+    col -= first_col(row);
     if (closed_across()) {
         col = floor_mod(col, grid_.cols);
     }
-    return row * vertex_cols() + col;
+    if (on_fold(row)) {
+        col = std::min(col, grid_.cols - col);
+    }
+    return before + col;
 }
 
 int ChartGrid::cell(int row, int col) const {

@@ -4,6 +4,10 @@
 // grid is then slanted by a little, so that row `rows` falls on row 0, `column_shift` columns
 // further on. "Straight" coordinates (s, f) take the slant out: s = g - slant f. In them cells are
 // axis-parallel.
+//
+// On a pillowcase the upper fold is slanted onto a column in the same way. Then columns are sewn
+// onto columns at both folds: the grid has no boundary, and threads of both families close. Columns
+// lie symmetrically about the folds, so a vertex on a fold is the same point from both sides.
 
 #pragma once
 
@@ -30,6 +34,9 @@ struct GridWish {
 // that would do.
 CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish);
 
+// Levels of columns made symmetric about the fold at level 0, and so about the one half round.
+std::vector<double> folded_levels(const std::vector<double>& levels);
+
 // Index arithmetic and coordinates of a chart's grid.
 class ChartGrid {
 public:
@@ -39,10 +46,15 @@ public:
     const CylinderGrid& grid() const { return grid_; }
     bool closed_across() const { return grid_.shape != ChartShape::Rectangle; }  // In g.
     bool closed_along() const { return grid_.shape == ChartShape::Torus; }       // In f.
+    bool has_folds() const { return grid_.shape == ChartShape::Pillowcase; }
 
-    // Rows and columns of vertices without repetition.
+    // Rows and columns of vertices without repetition: those of a row are its columns
+    // first_col(row) to first_col(row) + vertices_in(row) - 1, numbered on from row to row.
     int vertex_rows() const { return grid_.rows + (closed_along() ? 0 : 1); }
-    int vertex_cols() const { return grid_.cols + (closed_across() ? 0 : 1); }
+    int first_col(int row) const {
+        return has_folds() && row == grid_.rows ? grid_.column_shift : 0;
+    }
+    int vertices_in(int row) const;
     int vertex(int row, int col) const;  // Wraps as the grid closes.
     int cell(int row, int col) const;
 
@@ -57,6 +69,8 @@ public:
     Eigen::Vector2d unstraight(const Eigen::Vector2d& sf) const;
 
 private:
+    bool on_fold(int row) const { return has_folds() && (row == 0 || row == grid_.rows); }
+
     CylinderGrid grid_;
     double width_ = 1.0;
     double height_ = 1.0;

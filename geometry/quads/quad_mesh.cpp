@@ -83,7 +83,8 @@ Patch sample_patch(const ChartGrid& grid, const ChartSampler& sampler, const Con
     Patch patch;
     for (int row = 0; row < grid.vertex_rows(); ++row) {
         context.check();
-        for (int col = 0; col < grid.vertex_cols(); ++col) {
+        const int end = grid.first_col(row) + grid.vertices_in(row);
+        for (int col = grid.first_col(row); col < end; ++col) {
             patch.vertices.push_back(
                 sampler.point(grid.unstraight({grid.s_level(col), grid.f_level(row)})));
         }
@@ -121,9 +122,9 @@ void check_topology(std::size_t cylinder, const ChartGrid& grid, const Patch& pa
     const int euler = static_cast<int>(patch.vertices.size()) - found.edges +
                       static_cast<int>(patch.quads.size());
     int wanted_boundary = 0;
-    wanted_boundary += grid.closed_along() ? 0 : 2 * grid.grid().cols;
+    wanted_boundary += grid.closed_along() || grid.has_folds() ? 0 : 2 * grid.grid().cols;
     wanted_boundary += grid.closed_across() ? 0 : 2 * grid.grid().rows;
-    const int wanted_euler = grid.closed_across() ? 0 : 1;
+    const int wanted_euler = grid.has_folds() ? 2 : grid.closed_across() ? 0 : 1;
     if (found.faults != 0 || euler != wanted_euler || found.boundary_edges != wanted_boundary) {
         throw Error(ErrorKind::SelfCheck, "quads-topology",
                     fmt::format("quads: cylinder {} has {} faulty edges, Euler characteristic {} "

@@ -54,9 +54,12 @@ struct CylinderGrid {
     ChartShape shape = ChartShape::Rectangle;
     int rows = 0;
     int cols = 0;
-    int column_shift = 0;    // Torus: row `rows` continues row 0 this many columns further on:
-                             // vertex (rows, j) is vertex (0, j - column_shift).
-    double shear_deg = 0.0;  // Angle by which the grid leaves orthogonality; 0 unless a torus.
+    // Torus: row `rows` continues row 0 this many columns further on: vertex (rows, j) is vertex
+    // (0, j - column_shift). Pillowcase: vertex (rows, j) is vertex (rows, 2 column_shift - j), as
+    // (0, j) is (0, -j).
+    int column_shift = 0;
+    double shear_deg = 0.0;        // Angle by which the grid leaves orthogonality; 0 unless a torus
+                                   // or a pillowcase.
     std::vector<double> f_levels;  // rows + 1
     std::vector<double> g_levels;  // cols + 1
 };
