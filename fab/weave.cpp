@@ -36,8 +36,10 @@ Matrix pattern_matrix(const WeaveParams& params) {
     return params.matrix;
 }
 
+// Row -1 is the one below row 0.
 std::uint8_t at(const Matrix& matrix, int row, int col) {
-    const auto& line = matrix[static_cast<std::size_t>(row) % matrix.size()];
+    const auto& line =
+        matrix[(static_cast<std::size_t>(row + 1) + matrix.size() - 1) % matrix.size()];
     return line[static_cast<std::size_t>(col) % line.size()] != 0 ? 1 : 0;
 }
 
@@ -68,14 +70,25 @@ Weave weave_cells(const geometry::QuadMesh& mesh, const WeaveParams& params) {
     for (std::size_t quad = 0; quad < mesh.quads.size(); ++quad) {
         const auto& [a, b, c, d] = mesh.quads[quad];
         const geometry::QuadAddress& address = mesh.addresses[quad];
-        const std::array<std::pair<Edge, std::uint8_t>, 2> next = {{
+        const std::array<std::pair<Edge, std::uint8_t>, 3> next = {{
             {{c, b}, at(matrix, address.row, address.col + 1)},
             {{d, c}, at(matrix, address.row + 1, address.col)},
+            {{b, a}, at(matrix, address.row - 1, address.col)},
         }};
-        for (const auto& [edge, expected] : next) {
-            const auto neighbour = owners.find(edge);
-            if (neighbour != owners.end() &&
-                weave.warp_on_top[static_cast<std::size_t>(neighbour->second)] != expected) {
+        for (std::size_t side = 0; side < next.size(); ++side) {
+            const auto neighbour = owners.find(next[side].first);
+            if (neighbour == owners.end()) {
+                continue;
+            }
+            // Across the folds of a pillowcase a column meets another one of the same row, and both
+            // see the seam. Elsewhere what is below has looked up already.
+            const auto other = static_cast<std::size_t>(neighbour->second);
+            const bool folded = side > 0 && mesh.addresses[other].row == address.row &&
+                                mesh.addresses[other].cylinder == address.cylinder;
+            if (folded ? other < quad : side == 2) {
+                continue;
+            }
+            if (weave.warp_on_top[other] != next[side].second) {
                 weave.seams.push_back({static_cast<int>(quad), neighbour->second});
             }
         }
