@@ -71,6 +71,16 @@ step('a wrong measure is said at once and cannot be sent', async () => {
   await desk.page.getByLabel('Longest side').fill('200');
 });
 
+step('the layout is chosen among those that fit together', async () => {
+  await desk.page.getByText('How the surface is laid out').click();
+  const select = (name) => desk.page.getByRole('combobox', { name, exact: true });
+  await select('Holes at the tips').selectOption('Never');
+  assert.equal(await select('Function').isVisible(), true);
+  await select('Layout').selectOption('Closed both ways');
+  assert.equal(await select('Function').count(), 0);
+  await assertAccessible(desk.page, 'layout');
+});
+
 step('the job computes while its stages are watched', async () => {
   await desk.page.click('.new-job [type=submit]');
   await desk.page.waitForSelector('.job-page h1');
@@ -105,6 +115,12 @@ step('the sheets are drawn with every piece', async () => {
   assert.ok((await desk.page.locator('.sheet .piece').count()) > 3);
   await picture(desk.page, 'ready-light');
   await assertAccessible(desk.page, 'ready');
+});
+
+step('the layout and how even it is are said', async () => {
+  const panel = desk.page.locator('.foliation');
+  assert.match(await panel.innerText(), /Closed both ways/);
+  assert.match(await panel.innerText(), /largest .*times as long as the mean/);
 });
 
 step('a strip chosen in 3D lights up on its sheet, and back', async () => {

@@ -76,6 +76,12 @@ async function createJob(daemon, request, response) {
   sendJson(response, 201, job);
 }
 
+async function recomputeJob(daemon, id, request, response) {
+  const { name, params, file } = daemon.job(id);
+  const job = daemon.addJob({ name, params: (await jsonOf(request)).params ?? params, file });
+  sendJson(response, 201, job);
+}
+
 function artifactFiles(daemon, id) {
   return daemon.packages.get(id)?.files ?? daemon.missing('package', id);
 }
@@ -99,6 +105,7 @@ const kRoutes = [
   ['DELETE', /^\/jobs\/([^/]+)$/, (d, [id], q, r) => { d.removeJob(id); r.writeHead(204).end(); }],
   ['GET', /^\/jobs\/([^/]+)\/artifacts$/, (d, [id], q, r) => sendJson(r, 200, listArtifacts(d, id))],
   ['GET', /^\/jobs\/([^/]+)\/artifacts\/(.+)$/, (d, [id, name], q, r) => sendArtifact(d, r, id, name)],
+  ['POST', /^\/jobs\/([^/]+)\/recompute$/, (d, [id], q, r) => recomputeJob(d, id, q, r)],
   ['POST', /^\/jobs\/([^/]+)\/cuts$/, async (d, [id], q, r) => sendJson(r, 201, d.view(d.addCut(id, await jsonOf(q))))],
   ['GET', /^\/cuts$/, (d, _, q, r) => sendJson(r, 200, { cuts: d.snapshot().cuts })],
   ['GET', /^\/cuts\/([^/]+)$/, (d, [id], q, r) => sendJson(r, 200, d.view(d.cuts.get(id) ?? d.missing('cut', id)))],

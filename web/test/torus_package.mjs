@@ -208,7 +208,15 @@ function report(mesh, layout, counts) {
     format: 'leafcutter-report/1',
     input: { file: 'torus.off', vertices: 2048, faces: 4096, scale: 1 },
     topology: { genus: 1, boundary_loops: 0, euler: 0 },
-    foliation: { mode: 'torus', cylinders: [{ rows: counts.rows, cols: counts.columns }] },
+    surface: { removed_area_percent: 0 },
+    foliation: {
+      mode: 'torus', cylinders: [{ rows: counts.rows, cols: counts.columns }], singularities: [], punctures: [],
+      cell_spread: { variation: 0.36, largest_edge: 1.3 },
+      alternatives: [
+        { name: 'torus', cell_spread: { variation: 0.36, largest_edge: 1.3 }, removed_area_percent: 0, chosen: true },
+        { name: 'pants', cell_spread: { variation: 0.9, largest_edge: 3.4 }, removed_area_percent: 0.4, chosen: false },
+      ],
+    },
     quality: {
       overall: {
         angle_deviation_deg: { max: 3.91, avg: 1.274 },

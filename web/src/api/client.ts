@@ -53,6 +53,12 @@ export async function removeJob(id: string): Promise<void> {
   await send('DELETE', `/jobs/${id}`);
 }
 
+// A new job from the mesh of an old one.
+export async function recomputeJob(id: string, params: Readonly<Record<string, unknown>>): Promise<Job> {
+  const response = await send('POST', `/jobs/${id}/recompute`, { params });
+  return readJob(await response.json(), '');
+}
+
 export async function queueCut(job: string, device: string, sheets: readonly number[]): Promise<void> {
   await send('POST', `/jobs/${job}/cuts`, { device, sheets });
 }

@@ -64,6 +64,14 @@ export interface Layout {
   readonly unplaced: readonly string[];
 }
 
+export type Point3 = readonly [number, number, number];
+
+// What leaves.json says of the cylinders' borders: lines along them, and where those meet.
+export interface CriticalGraph {
+  readonly lines: readonly (readonly Point3[])[];
+  readonly points: readonly Point3[];
+}
+
 const family = oneOf<Family>('weft', 'warp');
 
 const readStrip: Reader<Strip> = (value, path) => {
@@ -133,6 +141,20 @@ export const readLayout: Reader<Layout> = (value, path) => {
     sheets: get('sheets', list(readLayoutSheet)),
     densityPercent: get('density_percent', optional(number, 0)),
     unplaced: get('unplaced', optional(list(text), [])),
+  };
+};
+
+const point3: Reader<Point3> = (value, path) => {
+  const [x, y, z] = list(number)(value, path);
+  if (x === undefined || y === undefined || z === undefined) throw new PayloadError(`${path}: expected a point [x, y, z]`);
+  return [x, y, z];
+};
+
+export const readCriticalGraph: Reader<CriticalGraph> = (value, path) => {
+  const get = record(value, path);
+  return {
+    lines: get('critical_graph', optional(list((line, at) => record(line, at)('points', list(point3))), [])),
+    points: get('singularities', optional(list((one, at) => record(one, at)('position', point3)), [])),
   };
 };
 

@@ -80,6 +80,7 @@ export const readJob: Reader<Job> = (value, path) => {
     createdAt: get('created_at', text),
     version: get('version', optional(number, 0)),
     file: get('file', optional(readFile, { name: '', bytes: 0 })),
+    params: get('params', optional(fields, {})),
     progress: get('progress', optional(readStage, { stage: '', fraction: 0 })),
     error: get('error', optional(readJobError, null)),
     summary: get('summary', optional(readSummary, null)),

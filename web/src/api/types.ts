@@ -33,6 +33,7 @@ export interface Job {
   readonly createdAt: string;
   readonly version: number;
   readonly file: { readonly name: string; readonly bytes: number };
+  readonly params: Readonly<Record<string, unknown>>; // As they were sent.
   readonly progress: { readonly stage: string; readonly fraction: number };
   readonly error: JobError | null;
   readonly summary: JobSummary | null;

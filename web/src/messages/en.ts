@@ -46,6 +46,25 @@ export const en = {
     weft: 'Weft material',
     warp: 'Warp material',
     standard: 'Standard',
+    foliation: {
+      title: 'How the surface is laid out',
+      mode: 'Layout',
+      pants: 'Cut into pairs of pants',
+      pantsNames: { reeb: 'Along a function', 'handle-loops': 'Through the handles', 'tunnel-loops': 'Around the tunnels' },
+      sweep: 'Function',
+      sweepNames: {
+        auto: 'The best of all',
+        harmonic: 'Harmonic',
+        x: 'Along x',
+        y: 'Along y',
+        z: 'Height (z)',
+        fiedler: 'Longest way (Fiedler)',
+      },
+      punctures: 'Holes at the tips',
+      punctureNames: { auto: 'Where cells get far too large', none: 'Never' },
+      components: 'Separate parts',
+      componentNames: { each: 'Weave each', largest: 'Only the largest' },
+    },
     submit: (files: number) => (files === 1 ? 'Weave it' : `Weave ${files} shapes`),
     cancel: 'Cancel',
     remove: (name: string) => `Leave ${name} out`,
@@ -63,6 +82,17 @@ export const en = {
     'double-weft': 'Double weft',
     'satin-5': 'Satin 5',
     'basket-2x2': 'Basket 2×2',
+  },
+
+  modes: {
+    auto: 'The most even',
+    pants: 'Cylinders',
+    'one-form': 'From boundary to boundary',
+    disk: 'One rectangle',
+    annulus: 'One ring',
+    torus: 'Closed both ways',
+    'sphere-pillowcase': 'Pillowcase, no holes',
+    'sphere-polar': 'From pole to pole',
   },
 
   upload: {
@@ -172,6 +202,30 @@ export const en = {
       certificateValue: (deviation: string) => `within ${deviation} of the quads`,
       time: 'Computed in',
     },
+  },
+
+  foliation: {
+    title: 'Foliation',
+    mode: 'Layout',
+    cylinders: 'Cylinders',
+    points: 'Singular points',
+    point: (prongs: number, number: number) => `${number} with ${prongs} ${prongs === 1 ? 'prong' : 'prongs'}`,
+    noPoints: 'none',
+    holes: 'Holes opened',
+    hole: (radius: string) => `radius ${radius} mm`,
+    noHoles: 'none',
+    removed: 'Not covered',
+    parts: 'Parts',
+    evenness: {
+      even: (largest: string) => `Cells are even: the largest are ${largest} times as long as the mean.`,
+      uneven: (largest: string) => `The largest cells are ${largest} times as long as the mean.`,
+      coarse: (largest: string) =>
+        `The largest cells are ${largest} times as long as the mean: limbs come out coarse. Narrower strips or holes at the tips help.`,
+    },
+    alternatives: 'Layouts looked at',
+    columns: { name: 'Layout', largest: 'Largest cells', variation: 'Variation', removed: 'Not covered' },
+    chosen: 'chosen',
+    recompute: 'Weave like this',
   },
 
   files: {

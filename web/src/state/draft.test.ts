@@ -51,6 +51,18 @@ test('materials are only named when chosen', () => {
   assert.deepEqual(draftParams({ ...kNewDraft, warp: 'felt' })['material'], { warp: 'felt' });
 });
 
+test('only what differs from the own choice of the daemon is sent', () => {
+  assert.equal(draftParams(kNewDraft)['foliation'], undefined);
+  const chosen = { ...kNewDraft, mode: 'pants', sweep: 'z', punctures: 'none', components: 'largest' } as const;
+  assert.deepEqual(draftParams(chosen)['foliation'], { mode: 'pants', function: 'z', punctures: 'none', components: 'largest' });
+});
+
+test('how pairs of pants are cut is not sent with a mode that has none: the daemon would refuse it', () => {
+  const disk = { ...kNewDraft, mode: 'disk', pants: 'tunnel-loops', sweep: 'x' } as const;
+  assert.deepEqual(draftParams(disk)['foliation'], { mode: 'disk' });
+  assert.deepEqual(draftParams({ ...disk, mode: 'auto' })['foliation'], { pants: 'tunnel-loops', function: 'x' });
+});
+
 test('every repeat is a full matrix in which both families come to the top', () => {
   for (const [pattern, rows] of Object.entries(kRepeats)) {
     const cells = rows.flat();

@@ -5,6 +5,27 @@ import { stem } from '../lib/format.ts';
 export const kPatterns = ['plain', 'twill-2x2', 'double-warp', 'double-weft', 'satin-5', 'basket-2x2'] as const;
 export type Pattern = (typeof kPatterns)[number];
 
+// How the surface is foliated: the words of the job parameters, the daemon's own choice first.
+export const kModes = [
+  'auto',
+  'pants',
+  'one-form',
+  'disk',
+  'annulus',
+  'torus',
+  'sphere-pillowcase',
+  'sphere-polar',
+] as const;
+export type FoliationMode = (typeof kModes)[number];
+export const kPantsSources = ['reeb', 'handle-loops', 'tunnel-loops'] as const;
+export type PantsSource = (typeof kPantsSources)[number];
+export const kSweepFunctions = ['auto', 'harmonic', 'x', 'y', 'z', 'fiedler'] as const;
+export type SweepFunction = (typeof kSweepFunctions)[number];
+export const kPunctures = ['auto', 'none'] as const;
+export type Punctures = (typeof kPunctures)[number];
+export const kComponents = ['each', 'largest'] as const;
+export type Components = (typeof kComponents)[number];
+
 export interface DraftFile {
   readonly key: number;
   readonly file: File;
@@ -18,6 +39,11 @@ export interface Draft {
   readonly pattern: Pattern;
   readonly weft: string; // Material ids; empty: the daemon's choice.
   readonly warp: string;
+  readonly mode: FoliationMode;
+  readonly pants: PantsSource; // These two count in the modes of usesPants() alone.
+  readonly sweep: SweepFunction;
+  readonly punctures: Punctures;
+  readonly components: Components;
 }
 
 export const kNewDraft: Draft = {
@@ -27,7 +53,17 @@ export const kNewDraft: Draft = {
   pattern: 'plain',
   weft: '',
   warp: '',
+  mode: 'auto',
+  pants: 'reeb',
+  sweep: 'auto',
+  punctures: 'auto',
+  components: 'each',
 };
+
+// Whether the surface may be cut into pairs of pants in this mode.
+export function usesPants(mode: FoliationMode): boolean {
+  return mode === 'auto' || mode === 'pants';
+}
 
 export type DraftAction =
   | { readonly type: 'add'; readonly files: readonly File[] }
@@ -78,14 +114,28 @@ export function draftFault(draft: Draft): DraftFault | null {
   return strip > longest / 3 ? 'strip-too-wide' : null;
 }
 
+// What differs from the daemon's own choice.
+function foliationParams(draft: Draft): Readonly<Record<string, string>> {
+  const cut = usesPants(draft.mode);
+  return {
+    ...(draft.mode === 'auto' ? {} : { mode: draft.mode }),
+    ...(cut && draft.pants !== 'reeb' ? { pants: draft.pants } : {}),
+    ...(cut && draft.sweep !== 'auto' ? { function: draft.sweep } : {}),
+    ...(draft.punctures === 'auto' ? {} : { punctures: draft.punctures }),
+    ...(draft.components === 'each' ? {} : { components: draft.components }),
+  };
+}
+
 // The job parameters that `draft` stands for. Only for a draft without fault.
 export function draftParams(draft: Draft): Readonly<Record<string, unknown>> {
   const material = {
     ...(draft.weft === '' ? {} : { weft: draft.weft }),
     ...(draft.warp === '' ? {} : { warp: draft.warp }),
   };
+  const foliation = foliationParams(draft);
   return {
     scale: { longest_side_mm: positive(draft.longestSideMm) },
+    ...(Object.keys(foliation).length === 0 ? {} : { foliation }),
     grid: { strip_width_mm: positive(draft.stripWidthMm) },
     weave: { pattern: draft.pattern },
     ...(Object.keys(material).length === 0 ? {} : { material }),

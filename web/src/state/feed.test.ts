@@ -13,6 +13,7 @@ function job(id: string, over: Partial<Job> = {}): Job {
     createdAt: `2026-01-01T00:00:0${id.length}Z`,
     version: 1,
     file: { name: 'a.obj', bytes: 1 },
+    params: {},
     progress: { stage: '', fraction: 0 },
     error: null,
     summary: null,

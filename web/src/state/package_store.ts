@@ -3,7 +3,7 @@
 import { signal } from '@preact/signals';
 
 import { artifactText, listArtifacts } from '../api/client.ts';
-import { type QuadMesh, readLayout, readQuads, readReport, readStrips, readWeave } from '../api/package_files.ts';
+import { type CriticalGraph, type QuadMesh, readCriticalGraph, readLayout, readQuads, readReport, readStrips, readWeave } from '../api/package_files.ts';
 import type { Artifact } from '../api/types.ts';
 import type { Reader } from '../lib/check.ts';
 import { parseProgram } from '../lib/gcode.ts';
@@ -21,6 +21,7 @@ export interface JobPackage {
   readonly index: StripIndex;
   readonly sheets: readonly SheetDrawing[];
   readonly figures: ReportFigures;
+  readonly critical: CriticalGraph;
 }
 
 export type PackageState =
@@ -40,6 +41,16 @@ async function json<T>(job: string, path: string, reader: Reader<T>): Promise<T>
   return reader(JSON.parse(await artifactText(job, path)), path);
 }
 
+const kNoCriticalGraph: CriticalGraph = { lines: [], points: [] };
+const kMostLeafBytes = 60_000_000; // The page does well without larger ones.
+
+// Only for drawing: a package without it is shown all the same.
+async function criticalGraph(job: string, artifacts: readonly Artifact[]): Promise<CriticalGraph> {
+  const leaves = artifacts.find((artifact) => artifact.path === 'leaves.json');
+  if (leaves === undefined || leaves.bytes > kMostLeafBytes) return kNoCriticalGraph;
+  return json(job, leaves.path, readCriticalGraph).catch(() => kNoCriticalGraph);
+}
+
 async function fetchPackage(job: string): Promise<JobPackage> {
   const [artifacts, mesh, strips, warpOnTop, layout, report] = await Promise.all([
     listArtifacts(job),
@@ -57,6 +68,7 @@ async function fetchPackage(job: string): Promise<JobPackage> {
     index: indexStrips(strips, layout),
     sheets: drawSheets(layout, strips),
     figures: reportFigures(report),
+    critical: await criticalGraph(job, artifacts),
   };
 }
 

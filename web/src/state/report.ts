@@ -18,7 +18,27 @@ export interface QualityRow {
   readonly largest: number | null;
 }
 
+export interface Alternative {
+  readonly name: string;
+  readonly largest: number;
+  readonly variation: number;
+  readonly removedPercent: number;
+  readonly chosen: boolean;
+}
+
+export interface FoliationFigures {
+  readonly mode: string;
+  readonly cylinders: number;
+  readonly points: readonly { readonly prongs: number; readonly count: number }[]; // Rising prongs.
+  readonly holeRadiiMm: readonly number[];
+  readonly removedPercent: number;
+  readonly largest: number | null; // Edge of the largest cells, in mean edges.
+  readonly parts: number;
+  readonly alternatives: readonly Alternative[];
+}
+
 export interface ReportFigures {
+  readonly foliation: FoliationFigures | null;
   readonly quality: readonly QualityRow[];
   readonly facts: {
     readonly vertices: number | null;
@@ -57,6 +77,54 @@ function countAt(report: unknown, ...path: readonly string[]): number | null {
   return Array.isArray(value) ? value.length : null;
 }
 
+function listAt(report: unknown, ...path: readonly string[]): readonly unknown[] {
+  const value = at(report, ...path);
+  return Array.isArray(value) ? value : [];
+}
+
+function textAt(report: unknown, ...path: readonly string[]): string {
+  const value = at(report, ...path);
+  return typeof value === 'string' ? value : '';
+}
+
+function pointsOf(report: Report): FoliationFigures['points'] {
+  const counts = new Map<number, number>();
+  for (const point of listAt(report, 'foliation', 'singularities')) {
+    const prongs = numberAt(point, 'prongs');
+    if (prongs !== null) counts.set(prongs, (counts.get(prongs) ?? 0) + 1);
+  }
+  return [...counts].sort(([a], [b]) => a - b).map(([prongs, count]) => ({ prongs, count }));
+}
+
+function foliationFigures(report: Report): FoliationFigures | null {
+  if (textAt(report, 'foliation', 'mode') === '') return null;
+  const known = (value: number | null): value is number => value !== null;
+  return {
+    mode: textAt(report, 'foliation', 'mode'),
+    cylinders: listAt(report, 'foliation', 'cylinders').length,
+    points: pointsOf(report),
+    holeRadiiMm: listAt(report, 'foliation', 'punctures').map((hole) => numberAt(hole, 'radius_mm')).filter(known),
+    removedPercent: numberAt(report, 'surface', 'removed_area_percent') ?? 0,
+    largest: numberAt(report, 'foliation', 'cell_spread', 'largest_edge'),
+    parts: numberAt(report, 'topology', 'components') ?? 1,
+    alternatives: listAt(report, 'foliation', 'alternatives').map((one) => ({
+      name: textAt(one, 'name'),
+      largest: numberAt(one, 'cell_spread', 'largest_edge') ?? 0,
+      variation: numberAt(one, 'cell_spread', 'variation') ?? 0,
+      removedPercent: numberAt(one, 'removed_area_percent') ?? 0,
+      chosen: at(one, 'chosen') === true,
+    })),
+  };
+}
+
+export type Evenness = 'even' | 'uneven' | 'coarse';
+
+// How much the largest cells stand out, given their edge in mean edges.
+export function evennessOf(largest: number): Evenness {
+  if (largest < 2.5) return 'even';
+  return largest < 6 ? 'uneven' : 'coarse';
+}
+
 export function reportFigures(report: Report): ReportFigures {
   const quality = kQuality
     .map((name) => ({
@@ -68,6 +136,7 @@ export function reportFigures(report: Report): ReportFigures {
   const timings = Object.values((at(report, 'timings_s') as object | undefined) ?? {});
   const seconds = timings.filter((value): value is number => typeof value === 'number');
   return {
+    foliation: foliationFigures(report),
     quality,
     facts: {
       vertices: numberAt(report, 'input', 'vertices'),

@@ -12,6 +12,7 @@ import { attempt, feed, go, loadMaterials, receive } from '../state/store.ts';
 import { AskButton, Chip } from './controls.tsx';
 import { CutPanel } from './cut_panel.tsx';
 import { FilesPanel } from './files_panel.tsx';
+import { FoliationPanel } from './foliation_panel.tsx';
 import { Icon } from './icons.tsx';
 import { ModelPanel } from './model/model_panel.tsx';
 import { ReportPanel } from './report_panel.tsx';
@@ -101,10 +102,11 @@ function Failure(props: { readonly job: Job }) {
   );
 }
 
-function Figures(props: { readonly content: JobPackage }) {
+function Figures(props: { readonly job: Job; readonly content: JobPackage }) {
   const { job, figures, artifacts } = props.content;
   return (
     <>
+      {figures.foliation !== null && <FoliationPanel job={props.job} figures={figures.foliation} />}
       <ReportPanel figures={figures} />
       <FilesPanel job={job} artifacts={artifacts} />
     </>
@@ -122,7 +124,8 @@ function Result(props: { readonly job: Job }) {
   const content = now.state === 'ready' && now.job === job.id ? now.content : null;
   // Machines and cuts report several times a second; these panels depend on none of it.
   const model = useMemo(() => content && <ModelPanel name={job.name} content={content} />, [job.name, content]);
-  const figures = useMemo(() => content && <Figures content={content} />, [content]);
+  const again = job.actions.includes('recompute');
+  const figures = useMemo(() => content && <Figures job={job} content={content} />, [content, again]);
   return (
     <>
       <CutPanel job={job} cut={cut} />

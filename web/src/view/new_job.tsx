@@ -4,7 +4,19 @@ import { useEffect, useId } from 'preact/hooks';
 
 import { bytes } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
-import { type Draft, type DraftFile, draftFault, kPatterns, kRepeats } from '../state/draft.ts';
+import {
+  type Draft,
+  type DraftFile,
+  draftFault,
+  kComponents,
+  kModes,
+  kPantsSources,
+  kPatterns,
+  kPunctures,
+  kRepeats,
+  kSweepFunctions,
+  usesPants,
+} from '../state/draft.ts';
 import { attempt, changeDraft, draft, loadMaterials, materials } from '../state/store.ts';
 import { sendDraft } from '../state/uploads.ts';
 import { ChooseFile } from './drop.tsx';
@@ -104,6 +116,53 @@ function MaterialSelect(props: { readonly label: string; readonly family: 'weft'
   );
 }
 
+function Choices<Value extends string>(props: {
+  readonly label: string;
+  readonly names: Readonly<Record<Value, string>>;
+  readonly all: readonly Value[];
+  readonly value: Value;
+  readonly onChoose: (value: Value) => void;
+}) {
+  const { names, all } = props;
+  const choose = (name: string): void => {
+    const value = all.find((one) => one === name);
+    if (value !== undefined) props.onChoose(value);
+  };
+  return (
+    <label class="field">
+      <span>{props.label}</span>
+      <select value={props.value} onChange={(event) => choose(event.currentTarget.value)}>
+        {all.map((value) => (
+          <option key={value} value={value}>
+            {names[value]}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+function FoliationChoices() {
+  const { mode, pants, sweep, punctures, components } = draft.value;
+  const words = t.draft.foliation;
+  return (
+    <details class="foliation-choices">
+      <summary>{words.title}</summary>
+      <div class="measures">
+        <Choices label={words.mode} names={t.modes} all={kModes} value={mode} onChoose={(chosen) => set({ mode: chosen })} />
+        {usesPants(mode) && (
+          <>
+            <Choices label={words.pants} names={words.pantsNames} all={kPantsSources} value={pants} onChoose={(chosen) => set({ pants: chosen })} />
+            <Choices label={words.sweep} names={words.sweepNames} all={kSweepFunctions} value={sweep} onChoose={(chosen) => set({ sweep: chosen })} />
+          </>
+        )}
+        <Choices label={words.punctures} names={words.punctureNames} all={kPunctures} value={punctures} onChoose={(chosen) => set({ punctures: chosen })} />
+        <Choices label={words.components} names={words.componentNames} all={kComponents} value={components} onChoose={(chosen) => set({ components: chosen })} />
+      </div>
+    </details>
+  );
+}
+
 export function NewJob() {
   useEffect(() => void attempt(loadMaterials), []);
   const now = draft.value;
@@ -143,6 +202,7 @@ export function NewJob() {
         <MaterialSelect label={t.draft.weft} family="weft" />
         <MaterialSelect label={t.draft.warp} family="warp" />
       </div>
+      <FoliationChoices />
       <p class="fault" role="alert">
         {fault === null ? '' : t.draft.faults[fault]}
       </p>

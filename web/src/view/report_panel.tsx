@@ -16,7 +16,7 @@ function computedIn(seconds: number): string {
   return seconds < kShortS ? `${figure(seconds, 2)} s` : duration(seconds);
 }
 
-function Fact(props: { readonly name: string; readonly value: string | null }) {
+export function Fact(props: { readonly name: string; readonly value: string | null }) {
   if (props.value === null) return null;
   return (
     <div>

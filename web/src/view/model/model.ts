@@ -12,9 +12,10 @@ import {
   Sphere,
 } from 'three';
 
-import type { Family, QuadMesh } from '../../api/package_files.ts';
+import type { CriticalGraph, Family, QuadMesh } from '../../api/package_files.ts';
 import { buildRibbons } from '../../state/ribbons.ts';
 import type { StripIndex } from '../../state/strip_index.ts';
+import { CriticalLines } from './critical_lines.ts';
 import { edgeGeometry, quadsOf, ribbonGeometry, stepsFor, surfaceGeometry } from './geometry.ts';
 
 export type ViewMode = 'woven' | 'weft' | 'warp' | 'surface';
@@ -23,6 +24,7 @@ export interface ModelContent {
   readonly mesh: QuadMesh;
   readonly warpOnTop: Uint8Array;
   readonly index: StripIndex;
+  readonly critical: CriticalGraph;
 }
 
 export interface Palette {
@@ -31,6 +33,7 @@ export interface Palette {
   readonly surface: string;
   readonly line: string;
   readonly mark: string;
+  readonly critical: string;
 }
 
 function marker(): Mesh<BufferGeometry, MeshLambertMaterial> {
@@ -49,6 +52,7 @@ export class Model {
   private readonly parts: Readonly<Record<Family, Mesh<BufferGeometry, MeshLambertMaterial>>>;
   private readonly skin: Mesh<BufferGeometry, MeshLambertMaterial>;
   private readonly edges: LineSegments<BufferGeometry, LineBasicMaterial>;
+  private readonly critical: CriticalLines;
   private readonly pointed = marker();
   private readonly chosen = marker();
   // A geometry shares its vertices with what it marks, and freeing it would free those too: kept for each
@@ -70,7 +74,8 @@ export class Model {
     const skin = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     this.skin = new Mesh(this.surface, skin);
     this.edges = new LineSegments(edgeGeometry(mesh, this.surface), new LineBasicMaterial());
-    this.root.add(this.parts.weft, this.parts.warp, this.skin, this.edges, this.pointed, this.chosen);
+    this.critical = new CriticalLines(content.critical, this.bounds.radius);
+    this.root.add(this.parts.weft, this.parts.warp, this.skin, this.edges, this.pointed, this.chosen, this.critical.root);
     this.show('woven');
   }
 
@@ -103,6 +108,7 @@ export class Model {
     this.parts.warp.material.color.set(palette.warp);
     this.skin.material.color.set(palette.surface);
     this.edges.material.color.set(palette.line);
+    this.critical.paint(palette.critical);
     this.chosen.material.color.set(palette.mark);
     this.chosen.material.emissive.set(palette.mark).multiplyScalar(0.35);
     this.pointed.material.color.set(palette.mark).lerp(new Color('#ffffff'), 0.35);
@@ -120,5 +126,6 @@ export class Model {
     for (const geometry of [...own, ...this.marked.values()]) geometry.dispose();
     for (const mesh of [this.parts.weft, this.parts.warp, this.skin, this.pointed, this.chosen]) mesh.material.dispose();
     this.edges.material.dispose();
+    this.critical.dispose();
   }
 }

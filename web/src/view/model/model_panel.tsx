@@ -23,6 +23,7 @@ function palette(element: Element): Palette {
     surface: colour('--model-surface'),
     line: colour('--model-line'),
     mark: colour('--mark'),
+    critical: colour('--critical'),
   };
 }
 

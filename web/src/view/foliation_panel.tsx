@@ -1,0 +1,99 @@
+// How the surface was laid out, how even its cells are, and what else was looked at.
+
+import { recomputeJob } from '../api/client.ts';
+import type { Job } from '../api/types.ts';
+import { figure } from '../lib/format.ts';
+import { t } from '../messages/messages.ts';
+import { alternativeParams, modeNamed } from '../state/recompute.ts';
+import { type Alternative, evennessOf, type FoliationFigures } from '../state/report.ts';
+import { attempt, go, receive } from '../state/store.ts';
+import { Panel } from './controls.tsx';
+import { Fact } from './report_panel.tsx';
+
+const words = t.foliation;
+
+function layoutName(name: string): string {
+  const mode = modeNamed(name);
+  return mode === null ? name : t.modes[mode];
+}
+
+function percentOf(value: number): string {
+  return `${figure(value, 2)} %`;
+}
+
+async function weaveLike(job: Job, name: string): Promise<void> {
+  const params = alternativeParams(job.params, name);
+  if (params === null) return;
+  await attempt(async () => {
+    const made = await recomputeJob(job.id, params);
+    receive({ type: 'job', seq: null, job: made });
+    go({ page: 'job', id: made.id });
+  });
+}
+
+function AlternativeRow(props: { readonly job: Job; readonly one: Alternative }) {
+  const { job, one } = props;
+  const can = !one.chosen && job.actions.includes('recompute') && modeNamed(one.name) !== null;
+  return (
+    <tr class={one.chosen ? 'chosen' : ''}>
+      <th scope="row">
+        {layoutName(one.name)} {one.chosen && <span class="tag">{words.chosen}</span>}
+        {can && (
+          <button type="button" class="button small" onClick={() => void weaveLike(job, one.name)}>
+            {words.recompute}
+          </button>
+        )}
+      </th>
+      <td>{figure(one.largest, 2)}</td>
+      <td class="wide-only">{figure(one.variation, 2)}</td>
+      <td>{percentOf(one.removedPercent)}</td>
+    </tr>
+  );
+}
+
+function Alternatives(props: { readonly job: Job; readonly all: readonly Alternative[] }) {
+  if (props.all.length === 0) return null;
+  const { name, largest, variation, removed } = words.columns;
+  return (
+    <table class="alternatives">
+      <caption>{words.alternatives}</caption>
+      <thead>
+        <tr>
+          {[name, largest, variation, removed].map((title) => (
+            <th key={title} scope="col" class={title === variation ? 'wide-only' : ''}>
+              {title}
+            </th>
+          ))}
+        </tr>
+      </thead>
+      <tbody>
+        {props.all.map((one) => (
+          <AlternativeRow key={one.name} job={props.job} one={one} />
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+export function FoliationPanel(props: { readonly job: Job; readonly figures: FoliationFigures }) {
+  const { job, figures } = props;
+  const { largest, points, holeRadiiMm: holes } = figures;
+  const said = points.map(({ prongs, count }) => words.point(prongs, count)).join(', ');
+  return (
+    <Panel title={words.title} class="foliation">
+      {largest !== null && <p>{words.evenness[evennessOf(largest)](figure(largest, 2))}</p>}
+      <dl class="facts-list">
+        <Fact name={words.mode} value={layoutName(figures.mode)} />
+        <Fact name={words.cylinders} value={figure(figures.cylinders)} />
+        <Fact name={words.points} value={said === '' ? words.noPoints : said} />
+        <Fact
+          name={words.holes}
+          value={holes.length === 0 ? words.noHoles : `${holes.length}: ${words.hole(holes.map((mm) => figure(mm, 2)).join(', '))}`}
+        />
+        <Fact name={words.removed} value={percentOf(figures.removedPercent)} />
+        {figures.parts > 1 && <Fact name={words.parts} value={figure(figures.parts)} />}
+      </dl>
+      <Alternatives job={job} all={figures.alternatives} />
+    </Panel>
+  );
+}
