@@ -14,6 +14,7 @@
 #include "geometry/pants/initial_map.h"
 #include "geometry/pants/reeb_graph.h"
 #include "geometry/pants/sweep_function.h"
+#include "geometry/pants/tree_triangle.h"
 
 namespace leafcutter::geometry {
 namespace {
@@ -109,7 +110,7 @@ private:
         std::vector<double>& weights = weights_.emplace_back();
         for (const MeshEdge& edge : part.rings.edges) {
             const auto whole = find_edge(surface_.rings, piece.source_vertex[at(edge.from)],
-                                        piece.source_vertex[at(edge.to)]);
+                                         piece.source_vertex[at(edge.to)]);
             weights.push_back(surface_.weights[at(whole)]);
         }
         part.piece = std::move(piece);
@@ -166,6 +167,10 @@ std::vector<PantsCandidate> pants_candidates(const DecompositionSurface& surface
             GraphMap map = pieces.decompose(one, attempt);
             check_pants_graph(map.graph, euler_of(surface),
                               static_cast<int>(surface.boundary_loops.size()));
+            if (const int triangle = find_misfit(map, surface.rings); triangle >= 0) {
+                throw Error(ErrorKind::SelfCheck, "broken-tree",
+                            fmt::format("the words round triangle {} don't fit", triangle));
+            }
             candidates.push_back({name, std::move(map)});
         } catch (const Error& error) {
             reasons += fmt::format("; {}: {}", name, error.what());

@@ -78,11 +78,12 @@ SweepValues harmonic(const DecompositionSurface& surface, int attempt) {
     SweepValues sweep;
     sweep.loop_is_low.assign(loops.size(), 0);
     if (loops.empty()) {
-        const auto first = at(attempt) * 7919 % held.size();
-        int low = farthest(path_lengths(surface, std::array{static_cast<int>(first)}));
-        for (int k = 0; k < attempt % 3; ++k) {  // Not only the two ends of the longest way.
-            low = static_cast<int>((at(low) + 104729) % held.size());
+        // The ends of the longest way; attempts start at other places, far from all before.
+        std::vector<int> ends{farthest(path_lengths(surface, std::array{0}))};
+        for (int k = 0; k <= attempt; ++k) {
+            ends.push_back(farthest(path_lengths(surface, ends)));
         }
+        const int low = attempt == 0 ? ends.front() : ends.back();
         hold(low, 0.0);
         hold(farthest(path_lengths(surface, std::array{low})), 1.0);
     } else {
@@ -94,12 +95,12 @@ SweepValues harmonic(const DecompositionSurface& surface, int attempt) {
             }
         }
         if (loops.size() == 1) {
-            const int far = farthest(path_lengths(surface, loops[0]));
-            hold(attempt == 0 ? far : static_cast<int>(at(far + 104729 * attempt) % held.size()),
-                 1.0);
-            for (const int v : loops[0]) {
-                hold(v, 0.0);
+            std::vector<int> far = loops[0];
+            for (int k = 0; k <= attempt; ++k) {
+                far.push_back(farthest(path_lengths(surface, far)));
             }
+            hold(far.back(), 1.0);
+            sweep.loop_is_low[0] = 1;
         }
     }
     const std::vector<WeightedEdge> edges = weighted_edges(surface);
