@@ -370,6 +370,70 @@ TEST(Pillowcase, StopsWhenAsked) {
     EXPECT_THROW(foliate_pillowcase(make_sample("sphere", 2000), {}, context), Cancelled);
 }
 
+TEST(SpherePolar, OfARoundSphereHasLatitudesAndLongitudes) {
+    TriangleMesh mesh = box(28);  // It has vertices exactly at the poles.
+    for (Vector3d& p : mesh.positions) {
+        p.normalize();
+    }
+    const std::vector<int> ends = vertices_at(mesh, {{0, 0, 1}, {0, 0, -1}});
+    FoliationOptions options;
+    options.poles = {ends[0], ends[1]};
+    const Foliation foliation = foliate_sphere_polar(mesh, options, {});
+    EXPECT_EQ(foliation.mode, FoliationMode::SpherePolar);
+    ASSERT_EQ(foliation.cylinders.size(), 1U);
+    EXPECT_TRUE(foliation.singularities.empty());
+    const Cylinder& chart = foliation.cylinders[0];
+    EXPECT_TRUE(testing::is_sound(chart));
+    ASSERT_EQ(foliation.punctures.size(), 2U);
+    const double radius = foliation.punctures[0].radius;
+    EXPECT_EQ(foliation.punctures[0].vertex, ends[0]);
+    EXPECT_EQ(foliation.punctures[1].vertex, ends[1]);
+    EXPECT_NEAR(foliation.punctures[1].radius, radius, 1e-12);
+    EXPECT_NEAR(radius / (0.02 * 2.0 * std::sqrt(3.0)), 1.0, 0.05);
+    // Mercator: height is the logarithm of the tangent of half the distance from a pole.
+    const double height = -2.0 * std::log(std::tan(0.5 * radius));
+    EXPECT_NEAR(chart.width / (2.0 * std::numbers::pi / height), 1.0, 0.02);
+    const double caps = 2.0 * std::numbers::pi * radius * radius;
+    EXPECT_NEAR(area_of(mesh) - area_of(chart.mesh), caps, 0.05 * caps);
+    const std::vector<Eigen::Vector2d> gf = testing::vertex_gf(chart);
+    for (std::size_t v = 0; v < gf.size(); ++v) {
+        const Vector3d p = chart.mesh.positions[v].normalized();
+        const double polar = 0.5 * std::acos(std::clamp(p.z(), -1.0, 1.0));
+        const double place = 0.5 + std::log(std::tan(polar)) / height;
+        EXPECT_NEAR(gf[v].y(), place, 0.02);
+        if (chart.source_vertex[v] >= 0) {
+            EXPECT_EQ(chart.mesh.positions[v], mesh.positions[at(chart.source_vertex[v])]);
+        }
+    }
+}
+
+TEST(SpherePolar, FindsTheEndsOfALongShape) {
+    const TriangleMesh mesh = ellipsoid({0.7, 3.0, 1.0});
+    const Foliation foliation = foliate_sphere_polar(mesh, {}, {});
+    ASSERT_EQ(foliation.punctures.size(), 2U);
+    const double one = mesh.positions[at(foliation.punctures[0].vertex)].y();
+    const double other = mesh.positions[at(foliation.punctures[1].vertex)].y();
+    EXPECT_GT(std::min(std::abs(one), std::abs(other)), 2.9);
+    EXPECT_LT(one * other, 0.0);
+    EXPECT_GT(foliation.spread.variation, 0.0);
+}
+
+TEST(SpherePolar, RefusesAnythingButTwoDifferentVertices) {
+    const TriangleMesh mesh = make_sample("sphere", 1000);
+    for (const std::array<int, 2>& poles :
+         {std::array<int, 2>{7, 7}, std::array<int, 2>{-1, 7}, std::array<int, 2>{7, 1 << 20}}) {
+        FoliationOptions options;
+        options.poles = poles;
+        try {
+            foliate_sphere_polar(mesh, options, {});
+            FAIL() << poles[0] << " and " << poles[1] << " taken";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::BadOption);
+            EXPECT_EQ(error.code(), "bad-poles");
+        }
+    }
+}
+
 struct Model {
     const char* file;
     double largest_variation;
