@@ -14,6 +14,8 @@ namespace {
 
 // Bounds of the weights of positive_edges(). The cotangent of a good triangle is about 0.6.
 constexpr double kLargestWeight = 50.0;
+// Added to a diagonal that rounding has made singular, by the sum of its weights' sizes.
+constexpr double kRounding = 1e-10;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -118,23 +120,32 @@ HarmonicSolver::HarmonicSolver(std::span<const WeightedEdge> edges, const std::v
     }
     std::vector<MatrixEntry> lower;
     lower.reserve(edges.size() * 3);
+    std::vector<double> size(static_cast<std::size_t>(unknowns_), 0.0);
     for (const WeightedEdge& edge : edges) {
         const int a = unknown_of_vertex_[at(edge.from)];
         const int b = unknown_of_vertex_[at(edge.to)];
         if (a == b) {
             continue;  // Both held, or a loop: no term in the unknowns.
         }
-        if (a >= 0) {
-            lower.push_back({a, a, edge.weight});
-        }
-        if (b >= 0) {
-            lower.push_back({b, b, edge.weight});
+        for (const int v : {a, b}) {
+            if (v >= 0) {
+                lower.push_back({v, v, edge.weight});
+                size[at(v)] += std::abs(edge.weight);
+            }
         }
         if (a >= 0 && b >= 0) {
             lower.push_back({std::max(a, b), std::min(a, b), -edge.weight});
         }
     }
-    solver_.emplace(unknowns_, lower);
+    try {
+        solver_.emplace(unknowns_, lower);
+    } catch (const Error&) {
+        // Needles on a boundary have weights of large size that cancel, but for rounding.
+        for (int v = 0; v < unknowns_; ++v) {
+            lower.push_back({v, v, kRounding * size[at(v)]});
+        }
+        solver_.emplace(unknowns_, lower);
+    }
 }
 
 Eigen::VectorXd HarmonicSolver::solve(Eigen::VectorXd values, std::span<const double> jump) const {
