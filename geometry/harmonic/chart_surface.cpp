@@ -1,5 +1,6 @@
 #include "geometry/harmonic/chart_surface.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <numeric>
@@ -85,6 +86,9 @@ ChartSurface start_surface(TriangleMesh mesh, std::vector<std::uint8_t> lines) {
 }
 
 ChartSurface split_edges(ChartSurface surface, const std::vector<char>& marked) {
+    if (std::find(marked.begin(), marked.end(), 1) == marked.end()) {
+        return surface;
+    }
     const std::vector<int> midpoint = add_midpoints(surface, marked);
     std::vector<std::array<int, 3>> pieces;
     pieces.reserve(surface.mesh.triangles.size());
