@@ -1,88 +1,72 @@
 #include "geometry/foliation.h"
 
+#include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "geometry/cases/annulus.h"
-#include "geometry/cases/disk.h"
-#include "geometry/cases/pants.h"
-#include "geometry/cases/torus.h"
+#include <fmt/format.h>
+
+#include "geometry/choose_foliation.h"
+#include "geometry/components.h"
+#include "geometry/surface_measures.h"
+#include "geometry/surface_part.h"
 #include "geometry/topology.h"
 
 namespace leafcutter::geometry {
 namespace {
 
-[[noreturn]] void refuse(const std::string& code, const std::string& what) {
-    throw Error(ErrorKind::NotSupported, code, what);
+double whole_area(const SurfacePart& part) {
+    return surface_area(part.mesh) + part.removed_area;
 }
 
-void check_mode_is_built(FoliationMode mode) {
-    switch (mode) {
-        case FoliationMode::OneForm:
-            refuse("mode-not-built", "foliation.mode: one-form is not supported yet; use auto");
-        case FoliationMode::SpherePolar:
-        case FoliationMode::SpherePillowcase:
-            refuse(
-                "mode-not-built",
-                "foliation.mode: the sphere modes are not supported yet; cut a hole into the model "
-                "and use auto");
-        case FoliationMode::Auto:
-        case FoliationMode::Pants:
-        case FoliationMode::Disk:
-        case FoliationMode::Annulus:
-        case FoliationMode::Torus:
-            return;
+// Leaves the other parts aside; returns what to say of that.
+std::string keep_largest(std::vector<SurfacePart>& parts) {
+    const std::size_t largest = largest_part(parts);
+    double all = 0.0;
+    for (const SurfacePart& part : parts) {
+        all += whole_area(part);
     }
+    const std::size_t others = parts.size() - 1;
+    SurfacePart kept = std::move(parts[largest]);
+    parts.clear();
+    parts.push_back(std::move(kept));
+    return fmt::format("{} smaller part{} of the model left out: {:.3g} % of its surface", others,
+                       others == 1 ? " is" : "s are",
+                       100.0 * (1.0 - whole_area(parts.front()) / all));
 }
 
-// The mode that a surface of this topology asks for.
-FoliationMode natural_mode(const Topology& topology) {
-    const std::string figures = " (genus " + std::to_string(topology.genus) + ", " +
-                                std::to_string(topology.boundary_loops.size()) + " boundary loops)";
-    if (topology.components != 1) {
-        throw Error(ErrorKind::BadMesh, "several-components",
-                    "the model has " + std::to_string(topology.components) +
-                        " separate parts; weave them one at a time");
+// Parts take their share of the progress by their number of triangles.
+std::vector<Foliation> foliate_each(const std::vector<SurfacePart>& parts,
+                                    const FoliationOptions& options,
+                                    const Context& context) {
+    std::size_t triangles = 0;
+    for (const SurfacePart& part : parts) {
+        triangles += part.mesh.triangles.size();
     }
-    if (topology.euler == 2) {
-        refuse("sphere-not-supported",
-               "the model is a closed sphere, which is not supported yet; cut one hole into it (a "
-               "disk) "
-               "or two (an annulus)");
+    std::vector<Foliation> foliations;
+    double done = 0.0;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        const double share =
+            static_cast<double>(parts[k].mesh.triangles.size()) / static_cast<double>(triangles);
+        Context own = context;
+        if (context.progress) {
+            own.progress = [&, done](std::string_view stage, double fraction) {
+                context.progress(stage, done + share * fraction);
+            };
+        }
+        try {
+            foliations.push_back(choose_foliation(parts[k], options_of(parts[k], options), own));
+        } catch (const Error& error) {
+            if (parts.size() == 1) {
+                throw;
+            }
+            throw Error(error.kind(), error.code(),
+                        fmt::format("part {} of {}: {}", k + 1, parts.size(), error.what()));
+        }
+        done += share;
     }
-    if (topology.euler < 0) {
-        return FoliationMode::Pants;
-    }
-    if (topology.euler == 1) {
-        return FoliationMode::Disk;
-    }
-    return topology.boundary_loops.empty() ? FoliationMode::Torus : FoliationMode::Annulus;
-}
-
-const char* name_of(FoliationMode mode) {
-    switch (mode) {
-        case FoliationMode::Disk:
-            return "disk";
-        case FoliationMode::Annulus:
-            return "annulus";
-        case FoliationMode::Pants:
-            return "surface for pants";
-        default:
-            return "torus";
-    }
-}
-
-void check_options(const FoliationOptions& options, FoliationMode natural) {
-    if (options.mode != FoliationMode::Auto && options.mode != natural) {
-        throw Error(ErrorKind::BadOption, "mode-does-not-fit",
-                    std::string("foliation.mode: \"") + name_of(options.mode) +
-                        "\" does not fit, the model is a topological " + name_of(natural));
-    }
-    if (options.corners && natural != FoliationMode::Disk) {
-        throw Error(ErrorKind::BadOption, "bad-corners",
-                    std::string("foliation.corners: only a disk has corners, the model is a "
-                                "topological ") +
-                        name_of(natural));
-    }
+    return foliations;
 }
 
 }  // namespace
@@ -91,21 +75,20 @@ Foliation compute_foliation(const Mesh& mesh,
                             const FoliationOptions& options,
                             const Context& context) {
     context.report("foliation", 0.0);
-    check_mode_is_built(options.mode);
-    const Topology topology = analyse_topology(mesh);
-    const FoliationMode natural = natural_mode(topology);
-    check_options(options, natural);
-    const TriangleMesh surface = to_triangle_mesh(mesh);
-    Foliation foliation;
-    if (natural == FoliationMode::Disk) {
-        foliation = foliate_disk(surface, topology.boundary_loops[0], options, context);
-    } else if (natural == FoliationMode::Pants) {
-        foliation = foliate_pants(surface, topology.boundary_loops, options, context);
-    } else if (natural == FoliationMode::Annulus) {
-        foliation = foliate_annulus(
-            surface, {topology.boundary_loops[0], topology.boundary_loops[1]}, options, context);
-    } else {
-        foliation = foliate_torus(surface, options, context);
+    std::vector<Puncture> given;
+    if (options.puncture == PunctureChoice::Given) {
+        given = options.punctures;
+    }
+    std::vector<SurfacePart> parts =
+        split_into_parts(to_triangle_mesh(mesh), analyse_topology(mesh), given, context);
+    std::string left_out;
+    if (options.components == Components::Largest && parts.size() > 1) {
+        left_out = keep_largest(parts);
+    }
+    check_names(options, parts);
+    Foliation foliation = join_parts(foliate_each(parts, options, context), parts);
+    if (!left_out.empty()) {
+        foliation.warnings.insert(foliation.warnings.begin(), std::move(left_out));
     }
     context.report("foliation", 1.0);
     return foliation;

@@ -39,33 +39,25 @@ void expect_refusal(const TriangleMesh& mesh,
     }
 }
 
-TEST(Foliation, RefusesASphere) {
-    expect_refusal(make_tetrahedron(), {}, ErrorKind::NotSupported, "sphere-not-supported");
-}
-
-TEST(Foliation, RefusesSeveralComponents) {
-    TriangleMesh two = make_square(4);
-    const TriangleMesh other = make_square(3);
-    const int offset = static_cast<int>(two.positions.size());
-    two.positions.insert(two.positions.end(), other.positions.begin(), other.positions.end());
-    for (const auto& t : other.triangles) {
-        two.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-    }
-    expect_refusal(two, {}, ErrorKind::BadMesh, "several-components");
-}
-
-TEST(Foliation, RefusesModesThatDoNotFitOrAreNotBuilt) {
+TEST(Foliation, RefusesModesThatDoNotFit) {
     FoliationOptions options;
     options.mode = FoliationMode::Torus;
     expect_refusal(make_square(4), options, ErrorKind::BadOption, "mode-does-not-fit");
     options.mode = FoliationMode::Disk;
     expect_refusal(make_prism(8, 3, 1.0, 1.0), options, ErrorKind::BadOption, "mode-does-not-fit");
-    options.mode = FoliationMode::Pants;
-    expect_refusal(make_prism(8, 3, 1.0, 1.0), options, ErrorKind::BadOption, "mode-does-not-fit");
-    for (const FoliationMode mode :
-         {FoliationMode::OneForm, FoliationMode::SpherePolar, FoliationMode::SpherePillowcase}) {
+    options.mode = FoliationMode::SpherePillowcase;
+    expect_refusal(make_square(4), options, ErrorKind::BadOption, "mode-does-not-fit");
+    options.mode = FoliationMode::SpherePolar;
+    expect_refusal(make_square(4), options, ErrorKind::BadOption, "mode-does-not-fit");
+}
+
+TEST(Foliation, RefusesModesThatNeedHolesNobodyMayOpen) {
+    FoliationOptions options;
+    options.puncture = PunctureChoice::None;
+    for (const FoliationMode mode : {FoliationMode::Pants, FoliationMode::OneForm}) {
         options.mode = mode;
-        expect_refusal(make_square(4), options, ErrorKind::NotSupported, "mode-not-built");
+        expect_refusal(make_square(4), options, ErrorKind::BadOption, "mode-does-not-fit");
+        expect_refusal(make_torus(10, 20, 0.3), options, ErrorKind::BadOption, "mode-does-not-fit");
     }
 }
 
