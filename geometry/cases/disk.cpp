@@ -58,35 +58,84 @@ std::vector<std::uint8_t> lines_of_vertices(const Sides& sides, std::size_t vert
     return lines;
 }
 
-// The harmonic function that is 0 on side `zero`, 1 on side `one`.
-Eigen::VectorXd between_sides(const std::vector<WeightedEdge>& edges,
-                              const std::vector<std::uint8_t>& lines,
-                              std::pair<Side, Side> zero_and_one) {
-    const auto n = static_cast<Eigen::Index>(lines.size());
-    std::vector<char> held(lines.size(), 0);
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(n);
+// Values of a function that are given.
+struct HeldValues {
+    std::vector<char> held;
+    Eigen::VectorXd values;
+};
+
+// 0 on side `zero`, 1 on side `one`.
+HeldValues between_sides(const std::vector<std::uint8_t>& lines,
+                         std::pair<Side, Side> zero_and_one) {
+    HeldValues out{std::vector<char>(lines.size(), 0),
+                   Eigen::VectorXd::Zero(static_cast<Eigen::Index>(lines.size()))};
     for (std::size_t v = 0; v < lines.size(); ++v) {
         const bool zero = ((lines[v] >> zero_and_one.first) & 1U) != 0;
         const bool one = ((lines[v] >> zero_and_one.second) & 1U) != 0;
-        held[v] = zero || one ? 1 : 0;
-        values[static_cast<Eigen::Index>(v)] = one ? 1.0 : 0.0;
+        out.held[v] = zero || one ? 1 : 0;
+        out.values[static_cast<Eigen::Index>(v)] = one ? 1.0 : 0.0;
     }
-    return HarmonicSolver(edges, held).solve(std::move(values));
+    return out;
 }
 
-SolvedChart solve_rectangle(const ChartSurface& surface) {
+// What is to hold at the sides of f, beyond its values at the ends.
+struct HeldSides {
+    std::array<int, 4> corners{};    // Vertices.
+    std::span<const double> values;  // Per vertex of the surface as given, or empty.
+};
+
+// Holds f along one side at the given values, linear between the given vertices.
+void hold_side(HeldValues& f,
+               const ChartSurface& surface,
+               const std::vector<int>& path,
+               std::span<const double> values) {
+    const auto position = [&](std::size_t i) -> const Eigen::Vector3d& {
+        return surface.mesh.positions[at(path[i])];
+    };
+    for (std::size_t i = 0; i + 1 < path.size();) {
+        std::size_t end = i + 1;
+        while (surface.source_vertex[at(path[end])] < 0) {
+            ++end;
+        }
+        const double first = values[at(surface.source_vertex[at(path[i])])];
+        const double last = values[at(surface.source_vertex[at(path[end])])];
+        const double length = (position(end) - position(i)).norm();
+        for (std::size_t k = i + 1; k < end; ++k) {
+            const double part = length > 0.0 ? (position(k) - position(i)).norm() / length : 0.5;
+            f.held[at(path[k])] = 1;
+            f.values[path[k]] = first + part * (last - first);
+        }
+        if (end + 1 < path.size()) {
+            f.held[at(path[end])] = 1;
+            f.values[path[end]] = last;
+        }
+        i = end;
+    }
+}
+
+SolvedChart solve_rectangle(const ChartSurface& surface, const HeldSides& sides) {
     SolvedChart solved;
     ChartMap& map = solved.map;
     map = start_chart(surface);
     const std::vector<WeightedEdge> edges =
         cotangent_edges(intrinsic_delaunay(map.mesh, map.edges));
-    const Eigen::VectorXd f = between_sides(edges, surface.lines, {Bottom, Top});
-    const Eigen::VectorXd g = between_sides(edges, surface.lines, {Left, Right});
+    HeldValues held = between_sides(surface.lines, {Bottom, Top});
+    if (!sides.values.empty()) {
+        for (const std::size_t side : {Right, Left}) {
+            hold_side(held, surface,
+                      boundary_path(map.edges, sides.corners[side], sides.corners[(side + 1) % 4]),
+                      sides.values);
+        }
+    }
+    const auto solve = [&](HeldValues given) {
+        return HarmonicSolver(edges, given.held).solve(std::move(given.values));
+    };
+    const Eigen::VectorXd f = solve(std::move(held));
+    const Eigen::VectorXd g = solve(between_sides(surface.lines, {Left, Right}));
     // Both energies bound the modulus, one from above, one from below; their geometric mean is much
     // closer to it.
     solved.upper = 2.0 * dirichlet_energy(edges, f);
     solved.lower = 1.0 / (2.0 * dirichlet_energy(edges, g));
-    solved.flux_mismatch = flux_variation(edges, f);
     map.shape = ChartShape::Rectangle;
     map.height = 1.0;
     map.width = std::sqrt(solved.upper * solved.lower);
@@ -110,6 +159,26 @@ std::vector<Rail> rails_between(const HalfEdges& edges, const std::array<int, 4>
     return rails;
 }
 
+// Gives `map` the f that its sides are to have, unless triangles would be flipped then beyond local
+// repair. Returns whether it did.
+bool hold_sides(ChartMap& map,
+                const ChartSurface& surface,
+                const HeldSides& sides,
+                const std::vector<Rail>& rails,
+                const Context& context) {
+    ChartMap held = map;
+    const ChartMap solved = solve_rectangle(surface, sides).map;
+    for (std::size_t v = 0; v < held.gf.size(); ++v) {
+        held.gf[v].y() = solved.gf[v].y();
+    }
+    const FlipReport repair = make_bijective(held, rails, context);
+    if (repair.whole_chart || repair.opened_limbs || !bad_triangles(held).empty()) {
+        return false;
+    }
+    map = std::move(held);
+    return true;
+}
+
 }  // namespace
 
 Foliation foliate_disk(const TriangleMesh& mesh,
@@ -125,24 +194,36 @@ Foliation foliate_disk(const TriangleMesh& mesh,
         options.corners ? locate_corners(loop, *options.corners) : choose_corners(mesh, loop);
     const std::size_t first = first_corner(arc_lengths(mesh, loop), chosen);
     return foliate_rectangle(
-        mesh, loop,
-        {chosen[first], chosen[(first + 1) % 4], chosen[(first + 2) % 4], chosen[(first + 3) % 4]},
+        mesh,
+        {loop,
+         {chosen[first], chosen[(first + 1) % 4], chosen[(first + 2) % 4], chosen[(first + 3) % 4]},
+         {}},
         options, context);
 }
 
 Foliation foliate_rectangle(const TriangleMesh& mesh,
-                            std::span<const int> loop,
-                            const LoopCorners& corner_places,
+                            const RectangleBorder& border,
                             const FoliationOptions& options,
                             const Context& context) {
-    const Sides sides = cut_sides(loop, corner_places);
+    const Sides sides = cut_sides(border.loop, border.corners);
     const std::array<int, 4> corners{sides[Bottom].front(), sides[Right].front(),
                                      sides[Top].front(), sides[Left].front()};
-    SolvedChart solved =
-        solve_resolved(start_surface(mesh, lines_of_vertices(sides, mesh.positions.size())),
-                       solve_rectangle, options.refinement, context);
+    ChartSurface surface;
+    SolvedChart solved = solve_resolved(
+        start_surface(mesh, lines_of_vertices(sides, mesh.positions.size())),
+        [&surface](const ChartSurface& finer) {
+            surface = finer;
+            return solve_rectangle(surface, {});
+        },
+        options.refinement, context);
     const std::vector<Rail> rails = rails_between(solved.map.edges, corners);
+    const bool met =
+        border.f.empty() || hold_sides(solved.map, surface, {corners, border.f}, rails, context);
     Foliation foliation = finish_foliation(std::move(solved), rails, context);
+    if (!met) {
+        foliation.warnings.emplace_back(
+            "it is so narrow or so coarse that its rows can't meet those of its neighbours");
+    }
     foliation.mode = FoliationMode::Disk;
     foliation.graph = {2, {{0, 1, 1.0}}};
     foliation.corners = corners;

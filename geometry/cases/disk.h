@@ -19,11 +19,17 @@ Foliation foliate_disk(const TriangleMesh& mesh,
                        const FoliationOptions& options,
                        const Context& context);
 
-// The same with f = 0 between the first two of `corners`, which are in the loop's direction, and
-// f = 1 between the others.
+struct RectangleBorder {
+    std::span<const int> loop;  // The boundary, surface to the left.
+    LoopCorners corners{};  // In the loop's direction; f = 0 between the first two, f = 1 between
+                            // the others.
+    std::span<const double> f = {};  // Per vertex, to be held along the other two sides, rising;
+                                     // empty for natural sides.
+};
+
+// The same with given corners.
 Foliation foliate_rectangle(const TriangleMesh& mesh,
-                            std::span<const int> loop,
-                            const LoopCorners& corners,
+                            const RectangleBorder& border,
                             const FoliationOptions& options,
                             const Context& context);
 

@@ -29,7 +29,7 @@ constexpr int kMostLoopRounds = 6;
 constexpr int kMostRegularRounds = 6;
 // Parts with less of the flux and of the area are made by the mesh, not by the shape, and a fifth
 // of a column in a grid of 3000 cells.
-constexpr double kThinPart = 0.003;
+constexpr double kThinPart = 0.01;
 // f may turn back by this much on a leaf of F*, where it only rises.
 constexpr double kMostTurn = 0.02;
 // Bounds of the error of all widths together, and of the whole surface's modulus.
@@ -197,17 +197,40 @@ SolvedForm solve_form(ChartSurface surface, Refinement refinement, const Context
     }
 }
 
-// The chart of one part: f from 0 to 1.
+Foliation chart_of(const FormPart& part,
+                   const RectangleBorder& border,
+                   const FoliationOptions& options,
+                   const Context& context) {
+    try {
+        return foliate_rectangle(part.mesh, border, options, context);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::SelfCheck) {
+            throw;
+        }
+        fail(
+            fmt::format("parts: one that carries a flux of {:.2g} can't be made a rectangle, {}. "
+                        "Choose foliation.mode pants, or other sources and sinks",
+                        part.flux, error.what()));
+    }
+}
+
+// The chart of one part. Along seams f is held at the whole surface's: rows of neighbouring parts
+// meet.
 void add_part(Foliation& foliation,
               const FormPart& part,
-              const std::vector<int>& source_vertex,
+              const CutSurface& cut,
               const FoliationOptions& options,
               const Context& context) {
-    Foliation chart = foliate_rectangle(part.mesh, part.loop, part.corners, options, context);
+    std::vector<double> f;
+    f.reserve(part.source_vertex.size());
+    for (const int v : part.source_vertex) {
+        f.push_back(cut.f[at(v)]);
+    }
+    Foliation chart = chart_of(part, {part.loop, part.corners, f}, options, context);
     Cylinder& cylinder = chart.cylinders.front();
     cylinder.graph_edge = static_cast<int>(foliation.cylinders.size());
     for (int& source : cylinder.source_vertex) {
-        source = source < 0 ? -1 : source_vertex[at(part.source_vertex[at(source)])];
+        source = source < 0 ? -1 : cut.surface.source_vertex[at(part.source_vertex[at(source)])];
     }
     for (const std::string& warning : chart.warnings) {
         foliation.warnings.push_back(fmt::format("part {}: {}", cylinder.graph_edge, warning));
@@ -318,7 +341,7 @@ Foliation foliate_one_form(const TriangleMesh& mesh,
     Context quiet = context;
     quiet.progress = nullptr;
     for (const FormPart& part : parts) {
-        add_part(foliation, part, cut.surface.source_vertex, options, quiet);
+        add_part(foliation, part, cut, options, quiet);
         context.report("foliation", 0.5 + 0.5 * static_cast<double>(foliation.cylinders.size()) /
                                               static_cast<double>(parts.size()));
     }

@@ -14,8 +14,8 @@
 namespace leafcutter::geometry {
 namespace {
 
-// New vertices stay this part of an edge away from its ends: no slivers. Their values of f and g
-// are those of the true crossing.
+// New vertices stay this part of an edge away from its ends: no slivers. g is taken to be what it
+// is at the true crossing.
 constexpr double kFromEnd = 0.05;
 // A leaf climbs from source to sink and so passes a triangle once. Several times as many steps as
 // there are edges mean that it goes round for ever.
@@ -142,7 +142,7 @@ private:
         surface.source_vertex.push_back(-1);
         surface.lines.push_back(
             static_cast<std::uint8_t>(twin < 0 ? surface.lines[at(b)] & surface.lines[at(c)] : 0));
-        out_.f.push_back((1.0 - ratio) * out_.f[at(b)] + ratio * out_.f[at(c)]);
+        out_.f.push_back((1.0 - kept) * out_.f[at(b)] + kept * out_.f[at(c)]);
         const int near = split_side(h, x, {to_b, to_c});
         outgoing_.push_back(near);
         if (twin >= 0) {
