@@ -50,13 +50,16 @@ private:
     ClosestPoint closest_;
 };
 
-// By how much a point misses the level of its leaf, in units of the chart's height or width.
+// By how much a point misses the level of its leaf, in units of the chart's height or width. Both
+// ends of a cylinder may lie on one critical leaf: where that is found, either will do.
 double miss(const Cylinder& chart, const Leaf& leaf, const Vector2d& gf) {
-    if (!leaf.of_conjugate) {
-        return std::abs(gf.y() - leaf.level) / chart.height;
+    if (leaf.of_conjugate) {
+        const double columns = (gf.x() - leaf.level) / chart.width;
+        return std::abs(columns - std::round(columns));
     }
-    const double columns = (gf.x() - leaf.level) / chart.width;
-    return std::abs(columns - std::round(columns));
+    const double rows = (gf.y() - leaf.level) / chart.height;
+    const bool at_end = leaf.level == 0.0 || leaf.level == chart.height;
+    return std::abs(at_end ? rows - std::round(rows) : rows);
 }
 
 using Segment = std::pair<Vector3d, Vector3d>;
