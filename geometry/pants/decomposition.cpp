@@ -12,6 +12,7 @@
 #include "geometry/loops/handle_tunnel.h"
 #include "geometry/pants/glue_maps.h"
 #include "geometry/pants/initial_map.h"
+#include "geometry/pants/pants_graph.h"
 #include "geometry/pants/reeb_graph.h"
 #include "geometry/pants/sweep_function.h"
 #include "geometry/pants/tree_triangle.h"

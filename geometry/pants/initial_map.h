@@ -21,15 +21,4 @@ GraphMap initial_map(const ReebGraph& reeb,
                      const VertexRings& rings,
                      std::span<const std::vector<int>> boundary_loops);
 
-inline GraphMap initial_map(const ReebGraph& reeb,
-                            std::span<const double> /*values*/,
-                            const VertexRings& rings,
-                            std::span<const std::vector<int>> boundary_loops) {
-    return initial_map(reeb, rings, boundary_loops);
-}
-
-// Throws Error(SelfCheck, "pants-graph") unless the graph is connected, with -`euler` nodes of
-// three legs and `loops` of one: then it has 3g - 3 + 2b edges and g cycles.
-void check_pants_graph(const MetricGraph& graph, int euler, int loops);
-
 }  // namespace leafcutter::geometry

@@ -152,7 +152,7 @@ Start start_on(const char* name, int faces, int axis) {
         values.push_back(p[axis]);
     }
     const ReebGraph reeb = build_reeb_graph(start.mesh.triangles, values, {}, {});
-    start.map = initial_map(reeb, values, start.rings, {});
+    start.map = initial_map(reeb, start.rings, {});
     return start;
 }
 
