@@ -87,6 +87,11 @@ public:
                 names[quad] = &strip;
             }
         }
+        for (std::size_t part = 0; job.parts.size() > 1 && part < job.parts.size(); ++part) {
+            for (const int cylinder : job.parts[part].cylinders) {
+                part_of_[static_cast<std::size_t>(cylinder)] = part + 1;
+            }
+        }
     }
 
     std::string write() {
@@ -179,6 +184,12 @@ private:
         return found == names.end() ? std::string() : found->second->id;
     }
 
+    // Empty where the model is all one part.
+    std::string part_text(std::size_t cylinder) const {
+        const auto part = part_of_.find(cylinder);
+        return part == part_of_.end() ? std::string() : fmt::format(", part {}", part->second);
+    }
+
     // Quads are sorted by cylinder, row and column.
     int first_quad(std::size_t cylinder) const {
         int first = 0;
@@ -191,8 +202,8 @@ private:
     void add_cylinder(std::size_t cylinder) {
         const auto& grid = job_.quads.grids[cylinder];
         const double cell = std::clamp(900.0 / grid.cols, 4.0, 16.0);
-        add("<h2>Cylinder {}: {} weft rows, {} warp columns</h2>\n", cylinder + 1, grid.rows,
-            grid.cols);
+        add("<h2>Cylinder {}{}: {} weft rows, {} warp columns</h2>\n", cylinder + 1,
+            part_text(cylinder), grid.rows, grid.cols);
         add("<p>Dark: warp on top. Rows run from {} (bottom) to {} (top), columns from {} (left) "
             "to "
             "{} (right), seen from outside.</p>\n",
@@ -326,6 +337,7 @@ private:
     std::map<std::string, int> sheet_of_;
     std::map<int, const Strip*> weft_of_;  // By quad.
     std::map<int, const Strip*> warp_of_;
+    std::map<std::size_t, std::size_t> part_of_;  // By cylinder, counted from 1; of several parts.
     std::string out_;
 };
 

@@ -98,7 +98,7 @@ public:
     PackageSummary run(const PipelineInput& input) {
         geometry::PolygonSoup soup;
         run_stage(kRead, [&](const Context&) { soup = read(input); });
-        run_stage(kRepair, [&](const Context&) { mend(soup); });
+        run_stage(kRepair, [&](const Context&) { mend(std::exchange(soup, {})); });
         run_stage(kFoliation, [&](const Context& context) { foliate(context); });
         run_stage(kQuads, [&](const Context& context) { make_quads(context); });
         run_stage(kStrips, [&](const Context& context) { make_strips_and_pieces(context); });
