@@ -16,9 +16,11 @@ namespace leafcutter::fab {
 
 namespace {
 
-// Places tried in a second on an ordinary machine. Work, not time, bounds the search, so that equal
-// input gives equal layouts.
-constexpr double kEvaluationsPerSecond = 200'000.0;
+// What two threads of an ordinary machine try in a second, for each corner of an average outline.
+// Work, not time, bounds the search, so that equal input gives equal layouts; only a machine that
+// is far slower is stopped by the clock.
+constexpr double kTriedPerSecondAndCorner = 16e6;
+constexpr double kSlowestFactor = 4.0;
 
 struct Batch {
     const Material& material;
@@ -26,15 +28,22 @@ struct Batch {
     std::vector<const Piece*> pieces;
 };
 
-NestOptions nest_options(const NestingParams& params, const Material& material, double share) {
+NestOptions nest_options(const NestingParams& params, const Batch& batch, double share) {
     NestOptions options;
     options.spacing_mm = params.spacing_mm;
     options.margin_mm = params.margin_mm;
-    options.kerf_mm = material.kerf_mm;
+    options.kerf_mm = batch.material.kerf_mm;
     options.rotation = params.rotation;
     options.seed = params.seed;
-    options.max_evaluations = std::max<std::int64_t>(
-        1, static_cast<std::int64_t>(params.time_s * kEvaluationsPerSecond * share));
+    std::size_t corners = 0;
+    for (const Piece* piece : batch.pieces) {
+        corners += piece->outline.size();
+    }
+    const double mean_corners =
+        static_cast<double>(corners) / static_cast<double>(batch.pieces.size());
+    const double tried = params.time_s * share * kTriedPerSecondAndCorner / (4.0 + mean_corners);
+    options.max_evaluations = std::max<std::int64_t>(1, std::llround(tried));
+    options.time_s = kSlowestFactor * params.time_s * share;
     return options;
 }
 
@@ -109,7 +118,7 @@ Layout nest_families(std::span<const Piece> pieces,
         }
         const double share =
             static_cast<double>(batch.pieces.size()) / static_cast<double>(pieces.size());
-        const NestOptions options = nest_options(params, batch.material, share);
+        const NestOptions options = nest_options(params, batch, share);
         append(whole, nest(batch.pieces, batch.material.sheets.front(), options, context), batch);
         context.check();  // A stopped search returns its best so far; here a stop is a stop.
     }

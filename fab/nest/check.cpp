@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "fab/nest/collision.h"
+#include "fab/nest/exact.h"
 #include "geometry/error.h"
 
 namespace leafcutter::fab {
@@ -41,44 +41,28 @@ Ring placed_outline(const Piece& piece, const Placement& placement) {
     return ring;
 }
 
-void check_margin(const Ring& ring, const Sheet& sheet, const NestOptions& options) {
-    const double margin = options.margin_mm + options.kerf_mm / 2.0 - kToleranceMm;
-    const Box box = bounds(ring);
-    if (box.low.minCoeff() < margin || box.high.x() > sheet.size.width_mm - margin ||
-        box.high.y() > sheet.size.height_mm - margin) {
-        fail(fmt::format("a piece leaves the margin of sheet {}", sheet.id));
-    }
-}
-
 using PieceIndex = std::map<std::string_view, const Piece*>;
 
-// Smallest gap on a sheet, infinite for a single piece. The search reaches as far as any pair so
-// far.
-double check_sheet(const Sheet& sheet,
-                   const PieceIndex& index,
-                   const NestOptions& options,
-                   double reach_mm) {
+// Smallest gap on a sheet, infinite for a single piece.
+double check_sheet(const Sheet& sheet, const PieceIndex& index, const NestOptions& options) {
     const std::vector<double> allowed = allowed_rotations(options.rotation);
-    const double wanted = options.spacing_mm + options.kerf_mm;
-    PlacedOutlines outlines({sheet.size.width_mm, sheet.size.height_mm});
-    double smallest = reach_mm;
+    const double unit = exact_unit(std::max(sheet.size.width_mm, sheet.size.height_mm));
+    const auto units = [&](double mm) { return std::llround(mm / unit); };
+    std::vector<PlacedRing> rings;
     for (const Placement& placement : sheet.placements) {
         const auto piece = index.find(placement.piece);
         if (piece == index.end()) {
             fail(fmt::format("piece {} was never asked for", placement.piece));
         }
         check_rotation(placement, allowed);
-        const Ring ring = placed_outline(*piece->second, placement);
-        check_margin(ring, sheet, options);
-        const double gap = outlines.distance(ring, smallest);
-        if (gap < wanted - kToleranceMm) {
-            fail(fmt::format("piece {} on sheet {} is {:.6f} mm from a neighbour, wanted {:.6f}",
-                             placement.piece, sheet.id, gap, wanted));
-        }
-        smallest = std::min(smallest, gap);
-        outlines.add(ring);
+        rings.push_back({fmt::format("piece {}", placement.piece),
+                         to_whole(placed_outline(*piece->second, placement), unit)});
     }
-    return smallest;
+    const double margin_mm = options.margin_mm + options.kerf_mm / 2.0 - kToleranceMm;
+    prove_within(rings, {units(margin_mm), units(margin_mm)},
+                 {units(sheet.size.width_mm - margin_mm), units(sheet.size.height_mm - margin_mm)});
+    const double gap_mm = options.spacing_mm + options.kerf_mm - kToleranceMm;
+    return unit * prove_apart(rings, std::max<std::int64_t>(0, units(gap_mm)));
 }
 
 void check_each_once(const Layout& layout, const PieceIndex& index) {
@@ -122,18 +106,9 @@ double prove_layout(const Layout& layout,
         index.emplace(piece->id, piece);
     }
     check_each_once(layout, index);
-    // A few gaps' reach finds the smallest at once on any crowded sheet; a sparse one needs all of
-    // it.
     double smallest = std::numeric_limits<double>::infinity();
     for (const Sheet& sheet : layout.sheets) {
-        const double diagonal = std::hypot(sheet.size.width_mm, sheet.size.height_mm);
-        const double first = std::min(diagonal, 4.0 * (options.spacing_mm + options.kerf_mm) + 1.0);
-        double found = check_sheet(sheet, index, options, std::min(first, smallest));
-        if (found >= first && first < smallest) {
-            found = check_sheet(sheet, index, options, std::min(diagonal, smallest));
-            found = found >= diagonal ? std::numeric_limits<double>::infinity() : found;
-        }
-        smallest = std::min(smallest, found);
+        smallest = std::min(smallest, check_sheet(sheet, index, options));
     }
     return std::isfinite(smallest) ? smallest : 0.0;
 }

@@ -1,40 +1,30 @@
-// Several heaps, under gravity towards either edge and in different orders; the best is kept and
-// proven.
+// Heaps give a first layout; overlap minimisation empties the last sheet from one side, then the
+// next. Every layout that counts is proven.
 
 #include "fab/nest/nest.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <optional>
-#include <random>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "fab/nest/check.h"
-#include "fab/nest/construct.h"
+#include "fab/nest/compaction.h"
+#include "fab/nest/heap_start.h"
 #include "fab/nest/shape.h"
+#include "fab/nest/simple_ring.h"
 #include "geometry/error.h"
 
 namespace leafcutter::fab {
 
 namespace {
 
-// One way to build a heap.
-struct Recipe {
-    std::vector<std::size_t> order;
-    bool turned = false;  // Gravity towards the left edge instead of the lower one.
-    double top_weight = 0.0;
-};
+// Kept above the wanted gap: numbers are rounded on their way into files.
+constexpr double kGapGuardMm = 2e-4;
 
-struct Best {
-    Heap heap;
-    double used =
-        std::numeric_limits<double>::infinity();  // Sheets, the last one by its used part.
-    Recipe recipe;
-};
+constexpr double kHeapShare = 0.15;  // Of the work, for the first layout.
 
 Eigen::Vector2d usable_extent(const SheetSize& size, const NestOptions& options) {
     const double edge = 2.0 * options.margin_mm + options.kerf_mm;
@@ -64,127 +54,159 @@ void check_options(const NestOptions& options) {
     }
 }
 
-// The search raster resolves the narrow bands among the shapes.
-double raster_cell_mm(const std::vector<NestShape>& shapes, const Eigen::Vector2d& extent) {
-    std::vector<double> widths;
-    widths.reserve(shapes.size());
-    for (const NestShape& shape : shapes) {
-        widths.push_back(shape.width_mm);
-    }
-    const auto quarter = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 4);
-    std::nth_element(widths.begin(), quarter, widths.end());
-    const double finest = extent.maxCoeff() / 2000.0;
-    return std::max(finest, std::clamp(*quarter / 8.0, 0.4, 2.0));
-}
+// The sheet as the search sees it: turned so that it empties from the right.
+struct Frame {
+    int quarters = 0;  // From the search's frame to the sheet's, counter-clockwise.
+    Eigen::Vector2d extent = Eigen::Vector2d::Zero();  // In the search's frame.
+    BoardPlan plan;
+};
 
-// Longest first, wide before narrow.
-std::vector<std::size_t> longest_first(const std::vector<NestShape>& shapes) {
-    const auto size = [&](std::size_t i) {
-        return shapes[i].diameter_mm + 2.0 * shapes[i].width_mm;
-    };
-    std::vector<std::size_t> order(shapes.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
-    return order;
-}
-
-class Search {
+class Nesting {
 public:
-    Search(const std::vector<NestShape>& shapes,
-           const Eigen::Vector2d& extent,
-           const NestOptions& options,
-           const geometry::Context& context)
-        : shapes_(shapes),
-          extent_(extent),
-          options_(options),
-          context_(context),
-          cell_mm_(raster_cell_mm(shapes, extent)),
-          random_(options.seed) {}
-
-    Best run() {
-        constexpr std::size_t kMostRounds = 200;
-        // One shape has nothing to be ordered against: each way of gravity is tried once.
-        const std::size_t rounds = shapes_.size() == 1 ? 2 : kMostRounds;
-        std::int64_t spent = 0;
-        for (std::size_t round = 0; round < rounds; ++round) {
-            if (round > 0 && spent >= options_.max_evaluations) {
-                break;
+    Nesting(std::span<const Piece* const> pieces,
+            const SheetSize& size,
+            const NestOptions& options,
+            const geometry::Context& context)
+        : all_(pieces), size_(size), options_(options), context_(context) {
+        check_options(options);
+        extent_ = usable_extent(size, options);
+        grow_ = (options.spacing_mm + options.kerf_mm) / 2.0 + kGapGuardMm;
+        const std::vector<double> allowed = allowed_rotations(options.rotation);
+        for (const Piece* piece : pieces) {
+            if (const std::string fault = ring_fault(piece->outline); !fault.empty()) {
+                throw geometry::Error(geometry::ErrorKind::BadOption, "bad-piece",
+                                      fmt::format("piece {}: {}", piece->id, fault));
             }
-            try {
-                spent += attempt(next_recipe(round));
-            } catch (const geometry::Cancelled&) {
-                if (best_.heap.laid.empty()) {
-                    throw;
-                }
-                break;  // The caller's time is up: the best so far is a whole layout.
+            // By as much as rounding may cost, a piece that only just fits doesn't.
+            const Eigen::Vector2d room = extent_.array() - 4.0 * kGapGuardMm;
+            if (fitting_angle(make_shape(piece->outline), room, allowed)) {
+                fitting_.push_back(piece);
+            } else {
+                unplaced_.push_back(piece->id);
             }
         }
-        return std::move(best_);
+    }
+
+    Layout run() {
+        if (fitting_.empty()) {
+            Layout layout;
+            layout.unplaced = unplaced_;
+            return layout;
+        }
+        auto [frame, start] = first_layout();
+        Layout best = proven(layout_of(frame, start.packing));
+        CompactionOptions search;
+        search.seed = options_.seed;
+        // A few pieces are soon laid as well as can be.
+        constexpr std::int64_t kPerPiece = 100'000;
+        const auto count = static_cast<std::int64_t>(fitting_.size());
+        search.max_evaluations = std::min(options_.max_evaluations, kPerPiece * count * count);
+        search.time_s = options_.time_s;
+        compact(frame.plan, start.packing, search, context_, [&](const Packing& better) {
+            try {
+                best = proven(layout_of(frame, better));
+                return true;
+            } catch (const geometry::Error&) {
+                return false;
+            }
+        });
+        return best;
     }
 
 private:
-    // First every plain recipe, then the best one with a few shapes moved to other turns.
-    Recipe next_recipe(std::size_t round) {
-        constexpr std::array<double, 3> kTopWeights{0.0, 0.5, 0.25};
-        if (round < 2 * kTopWeights.size()) {
-            return {longest_first(shapes_), round % 2 == 1, kTopWeights[round / 2]};
+    Frame make_frame(int quarters, std::size_t sheets) const {
+        Frame frame;
+        frame.quarters = quarters;
+        frame.extent = quarters % 2 == 0 ? extent_ : Eigen::Vector2d(extent_.y(), extent_.x());
+        std::vector<double> allowed = allowed_rotations(options_.rotation);
+        for (double& angle : allowed) {
+            angle = std::remainder(angle - 90.0 * quarters, 360.0);
         }
-        Recipe recipe = best_.recipe;
-        const std::size_t count = recipe.order.size();
-        const std::size_t moves = 1 + random_() % 4;
-        const std::size_t reach = 1 + count / 4;
-        for (std::size_t i = 0; i < moves; ++i) {
-            const std::size_t from = random_() % count;
-            const std::size_t step = random_() % (2 * reach + 1);
-            const std::size_t to = std::min(count - 1, from + step - std::min(from + step, reach));
-            const std::size_t shape = recipe.order[from];
-            recipe.order.erase(recipe.order.begin() + static_cast<std::ptrdiff_t>(from));
-            recipe.order.insert(recipe.order.begin() + static_cast<std::ptrdiff_t>(to), shape);
+        for (std::size_t i = 0; i < fitting_.size(); ++i) {
+            frame.plan.parts.push_back(make_part(fitting_[i]->outline, grow_, allowed));
+            std::vector<TurnedPart> turned(allowed.size());
+            for (std::size_t k = 0; k < turned.size(); ++k) {
+                turn_part(frame.plan.parts.back(), allowed[k], turned[k]);
+            }
+            frame.plan.turned.push_back(std::move(turned));
+            frame.plan.part_of.push_back(i);
         }
-        return recipe;
+        // Outlines are grown, so their sheets are, too.
+        frame.plan.rooms.assign(sheets,
+                                {frame.extent.x() + 2.0 * grow_, frame.extent.y() + 2.0 * grow_});
+        return frame;
     }
 
-    std::int64_t attempt(Recipe recipe) {
-        HeapOptions heap_options;
-        heap_options.extent = recipe.turned ? Eigen::Vector2d(extent_.y(), extent_.x()) : extent_;
-        heap_options.gap_mm = options_.spacing_mm + options_.kerf_mm;
-        heap_options.cell_mm = cell_mm_;
-        heap_options.top_weight = recipe.top_weight;
-        heap_options.allowed_deg = allowed_rotations(options_.rotation);
-        for (double& angle : heap_options.allowed_deg) {
-            angle -= recipe.turned ? 90.0 : 0.0;
+    // The better one of heaps towards either edge.
+    std::pair<Frame, HeapStart> first_layout() const {
+        const auto rows = static_cast<std::int64_t>(
+            kHeapShare * static_cast<double>(options_.max_evaluations) / 2.0);
+        std::optional<std::pair<Frame, HeapStart>> best;
+        for (const int quarters : {0, 1}) {
+            Frame frame = make_frame(quarters, 1);
+            HeapStart start = heap_start(frame.plan, rows, options_.seed, context_);
+            frame.plan.rooms.assign(static_cast<std::size_t>(start.packing.extent.bins),
+                                    frame.plan.rooms.front());
+            const double area = area_taken(frame.plan, start.packing.extent);
+            if (!best || area < area_taken(best->first.plan, best->second.packing.extent)) {
+                best.emplace(std::move(frame), std::move(start));
+            }
         }
-        Heap heap = build_heap(shapes_, recipe.order, heap_options, context_);
-        const std::int64_t evaluations = heap.evaluations;
-        const double used = heap.sheets_used(heap_options.extent.y());
-        // An equal one is taken too: a walk over a plateau may find its way down.
-        if (used <= best_.used) {
-            best_ = {std::move(heap), used, std::move(recipe)};
-        }
-        return std::max<std::int64_t>(1, evaluations);
+        return std::move(*best);
     }
 
-    const std::vector<NestShape>& shapes_;
-    Eigen::Vector2d extent_;
+    Placement placement_of(const Frame& frame, std::size_t item, const Position& at) const {
+        const double edge_mm = options_.margin_mm + options_.kerf_mm / 2.0;
+        Eigen::Vector2d p(at.x - grow_, at.y - grow_);
+        for (int turn = 0; turn < frame.quarters; ++turn) {
+            p = {frame.extent.y() - p.y(), p.x()};
+        }
+        const double angle = std::remainder(at.angle_deg + 90.0 * frame.quarters, 360.0);
+        const Ring origin = moved({frame.plan.parts[item].origin}, {angle, {0.0, 0.0}});
+        p += Eigen::Vector2d(edge_mm, edge_mm) - origin.front();
+        return {fitting_[item]->id, p.x(), p.y(), angle, false};
+    }
+
+    Layout layout_of(const Frame& frame, const Packing& packing) const {
+        Layout layout;
+        layout.unplaced = unplaced_;
+        for (int bin = 0; bin < packing.extent.bins; ++bin) {
+            Sheet sheet;
+            sheet.size = size_;
+            layout.sheets.push_back(std::move(sheet));
+        }
+        double area_mm2 = 0.0;
+        for (std::size_t item = 0; item < packing.positions.size(); ++item) {
+            const Position& at = packing.positions[item];
+            layout.sheets[static_cast<std::size_t>(at.bin)].placements.push_back(
+                placement_of(frame, item, at));
+            area_mm2 += std::abs(signed_area(fitting_[item]->outline));
+        }
+        // A search may empty any sheet.
+        std::erase_if(layout.sheets, [](const Sheet& sheet) { return sheet.placements.empty(); });
+        for (std::size_t i = 0; i < layout.sheets.size(); ++i) {
+            layout.sheets[i].id = static_cast<int>(i) + 1;
+        }
+        layout.density_percent =
+            100.0 * area_mm2 /
+            (size_.width_mm * size_.height_mm * static_cast<double>(layout.sheets.size()));
+        return layout;
+    }
+
+    Layout proven(Layout layout) const {
+        layout.smallest_gap_mm = prove_layout(layout, all_, options_);
+        return layout;
+    }
+
+    std::span<const Piece* const> all_;
+    const SheetSize& size_;
     const NestOptions& options_;
     const geometry::Context& context_;
-    double cell_mm_;
-    std::mt19937 random_;
-    Best best_;
+    Eigen::Vector2d extent_;
+    double grow_ = 0.0;
+    std::vector<const Piece*> fitting_;
+    std::vector<std::string> unplaced_;
 };
-
-// From the heap's frame, which may be turned by a quarter, to the sheet's.
-Pose on_sheet(const Pose& pose, const Best& best, const Eigen::Vector2d& extent, double edge_mm) {
-    Pose out = pose;
-    if (best.recipe.turned) {
-        out.angle_deg += 90.0;
-        out.offset = {extent.x() - pose.offset.y(), pose.offset.x()};
-    }
-    out.angle_deg = std::remainder(out.angle_deg, 360.0);
-    out.offset.array() += edge_mm;
-    return out;
-}
 
 }  // namespace
 
@@ -192,44 +214,7 @@ Layout nest(std::span<const Piece* const> pieces,
             const SheetSize& size,
             const NestOptions& options,
             const geometry::Context& context) {
-    check_options(options);
-    const Eigen::Vector2d extent = usable_extent(size, options);
-    const std::vector<double> allowed = allowed_rotations(options.rotation);
-    Layout layout;
-    std::vector<NestShape> shapes;
-    std::vector<const Piece*> fitting;
-    for (const Piece* piece : pieces) {
-        NestShape shape = make_shape(piece->outline);
-        if (fitting_angle(shape, extent, allowed)) {
-            shapes.push_back(std::move(shape));
-            fitting.push_back(piece);
-        } else {
-            layout.unplaced.push_back(piece->id);
-        }
-    }
-    if (shapes.empty()) {
-        return layout;
-    }
-    const Best best = Search(shapes, extent, options, context).run();
-    double area_mm2 = 0.0;
-    for (std::size_t i = 0; i < best.heap.sheets; ++i) {
-        Sheet sheet;
-        sheet.id = static_cast<int>(i) + 1;
-        sheet.size = size;
-        layout.sheets.push_back(std::move(sheet));
-    }
-    const double edge_mm = options.margin_mm + options.kerf_mm / 2.0;
-    for (const Laid& laid : best.heap.laid) {
-        const Pose pose = on_sheet(laid.pose, best, extent, edge_mm);
-        layout.sheets[laid.sheet].placements.push_back(
-            {fitting[laid.shape]->id, pose.offset.x(), pose.offset.y(), pose.angle_deg, false});
-        area_mm2 += shapes[laid.shape].area_mm2;
-    }
-    layout.density_percent =
-        100.0 * area_mm2 /
-        (size.width_mm * size.height_mm * static_cast<double>(layout.sheets.size()));
-    layout.smallest_gap_mm = prove_layout(layout, pieces, options);
-    return layout;
+    return Nesting(pieces, size, options, context).run();
 }
 
 }  // namespace leafcutter::fab

@@ -1,7 +1,7 @@
 // Places pieces on as many sheets as needed, without overlap.
 //
-// Equal pieces, options and seed give equal output. The caller bounds time through `context.stop`
-// or `max_evaluations`; a clock never enters.
+// Equal pieces, options and seed give equal output, whatever the number of threads, unless
+// `time_s` ends the search. A stop request ends it with the best layout so far.
 
 #pragma once
 
@@ -21,13 +21,15 @@ struct NestOptions {
     double kerf_mm = 0.0;
     Rotation rotation = Rotation::Free;
     std::uint32_t seed = 1;
-    std::int64_t max_evaluations = 2'000'000;
+    std::int64_t max_evaluations = 400'000;  // Places tried for a piece.
+    double time_s = 0.0;  // By the context's clock, from the first layout on; 0: no limit.
 };
 
 // Nests `pieces` on sheets of `size`; sheet ids count from 1. Every layout returned is
 // proven: no two outlines closer than spacing + kerf, none outside the margin.
 //
-// Throws Error(BadOption) for a sheet smaller than its margins.
+// Throws Error(BadOption) for a sheet smaller than its margins or an outline that is no simple
+// polygon, naming the piece; Cancelled if stopped before there is a layout.
 Layout nest(std::span<const Piece* const> pieces,
             const SheetSize& size,
             const NestOptions& options,

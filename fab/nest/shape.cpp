@@ -15,31 +15,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-// Counter-clockwise, by Andrew's monotone chain.
-Ring convex_hull(Ring points) {
-    std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
-        return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-    });
-    Ring hull(2 * points.size());
-    std::size_t size = 0;
-    const auto add = [&](const Eigen::Vector2d& point, std::size_t floor) {
-        while (size >= floor + 2 &&
-               turn_of(hull[size - 1] - hull[size - 2], point - hull[size - 1]) <= 0.0) {
-            --size;
-        }
-        hull[size++] = point;
-    };
-    for (const Eigen::Vector2d& point : points) {
-        add(point, 0);
-    }
-    const std::size_t upper = size - 1;
-    for (std::size_t i = points.size() - 1; i-- > 0;) {
-        add(points[i], upper);
-    }
-    hull.resize(size > 1 ? size - 1 : size);
-    return hull;
-}
-
 double angle_of_deg(const Eigen::Vector2d& direction) {
     return std::atan2(direction.y(), direction.x()) / kDegree;
 }
@@ -100,6 +75,31 @@ bool fits(const Ring& hull, double angle_deg, const Eigen::Vector2d& extent) {
 }
 
 }  // namespace
+
+// By Andrew's monotone chain.
+Ring convex_hull(Ring points) {
+    std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+        return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+    });
+    Ring hull(2 * points.size());
+    std::size_t size = 0;
+    const auto add = [&](const Eigen::Vector2d& point, std::size_t floor) {
+        while (size >= floor + 2 &&
+               turn_of(hull[size - 1] - hull[size - 2], point - hull[size - 1]) <= 0.0) {
+            --size;
+        }
+        hull[size++] = point;
+    };
+    for (const Eigen::Vector2d& point : points) {
+        add(point, 0);
+    }
+    const std::size_t upper = size - 1;
+    for (std::size_t i = points.size() - 1; i-- > 0;) {
+        add(points[i], upper);
+    }
+    hull.resize(size > 1 ? size - 1 : size);
+    return hull;
+}
 
 Box bounds(std::span<const Eigen::Vector2d> points) {
     Box box{points.front(), points.front()};

@@ -46,6 +46,9 @@ inline double turn_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
+// Counter-clockwise.
+Ring convex_hull(Ring points);
+
 Box bounds(std::span<const Eigen::Vector2d> points);
 double signed_area(std::span<const Eigen::Vector2d> ring);
 Ring moved(const Ring& ring, const Pose& pose);

@@ -200,7 +200,9 @@ TEST(Nest, StacksEqualArcsIntoEachOther) {
     for (int i = 0; i < 24; ++i) {
         pieces.push_back(band_piece(fmt::format("W{}", i), {420.0, 9.0, 1.2, false}));
     }
-    const Layout layout = nest(pointers(pieces), kSheet, {});
+    NestOptions options;
+    options.max_evaluations = 20'000;
+    const Layout layout = nest(pointers(pieces), kSheet, options);
     // Bounds of about 400 x 70 mm: side by side, five would fill the sheet.
     EXPECT_EQ(layout.sheets.size(), 1U);
 }

@@ -1,0 +1,221 @@
+#include "fab/nest/compaction.h"
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <thread>
+
+#include "fab/nest/explorer.h"
+#include "geometry/error.h"
+
+namespace leafcutter::fab {
+
+namespace {
+
+constexpr std::int64_t kEpoch = 20'000;  // Evaluations of each search between two exchanges.
+constexpr std::size_t kSearches = 2;
+
+// The narrowest box any part can have.
+double narrowest(const BoardPlan& plan) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t part = 0; part < plan.parts.size(); ++part) {
+        for (const TurnedPart& turned : plan.turned[part]) {
+            least = std::min(least, static_cast<double>(turned.high_x - turned.low_x));
+        }
+        if (plan.parts[part].turns_freely()) {
+            least = std::min(least, plan.parts[part].width);
+        }
+    }
+    return least;
+}
+
+// Runs all searches for an epoch, on as many threads as allowed.
+void run_epoch(std::vector<std::unique_ptr<Explorer>>& searches,
+               std::int64_t evaluations,
+               double progress,
+               const geometry::Context& context) {
+    std::vector<std::exception_ptr> failures(searches.size());
+    const auto run = [&](std::size_t i) {
+        try {
+            searches[i]->advance(evaluations, progress, context.stop);
+        } catch (...) {
+            failures[i] = std::current_exception();
+        }
+    };
+    {
+        std::vector<std::jthread> others;
+        for (std::size_t i = 1; i < searches.size() && context.threads > 1; ++i) {
+            others.emplace_back(run, i);
+        }
+        run(0);
+        for (std::size_t i = 1; i < searches.size() && context.threads <= 1; ++i) {
+            run(i);
+        }
+    }
+    for (const std::exception_ptr& failure : failures) {
+        if (failure) {
+            std::rethrow_exception(failure);
+        }
+    }
+}
+
+// A strip without end starts at what its parts need if they fill it by half.
+double first_width(const BoardPlan& plan) {
+    const BoardPlan::Room& room = plan.rooms.front();
+    if (plan.rooms.size() > 1) {
+        return room.width;
+    }
+    double area = 0.0;
+    for (const std::size_t part : plan.part_of) {
+        area += plan.parts[part].area;
+    }
+    return std::min(room.width, 2.0 * area / room.height);
+}
+
+// More room: a wider last sheet, or one more. False if there is none.
+bool widen(const BoardPlan& plan, Extent& extent) {
+    const double whole = plan.rooms[static_cast<std::size_t>(extent.bins) - 1].width;
+    if (extent.last_width < whole) {
+        extent.last_width = std::min(whole, 1.2 * extent.last_width);
+        return true;
+    }
+    if (extent.bins == static_cast<int>(plan.rooms.size())) {
+        return false;
+    }
+    ++extent.bins;
+    extent.last_width = plan.rooms[static_cast<std::size_t>(extent.bins) - 1].width;
+    return true;
+}
+
+}  // namespace
+
+double area_taken(const BoardPlan& plan, const Extent& extent) {
+    double area = 0.0;
+    for (int bin = 0; bin + 1 < extent.bins; ++bin) {
+        const BoardPlan::Room& room = plan.rooms[static_cast<std::size_t>(bin)];
+        area += room.width * room.height;
+    }
+    return area + extent.last_width * plan.rooms[static_cast<std::size_t>(extent.bins) - 1].height;
+}
+
+Extent extent_of_area(const BoardPlan& plan, double area) {
+    const double least = narrowest(plan);
+    Extent extent{0, 0.0};
+    double left = area;
+    for (const BoardPlan::Room& room : plan.rooms) {
+        const double width = std::min(room.width, left / room.height);
+        if (extent.bins > 0 && width < least) {
+            break;
+        }
+        ++extent.bins;
+        extent.last_width = width;
+        left -= width * room.height;
+    }
+    return extent;
+}
+
+Packing first_packing(const BoardPlan& plan, std::uint64_t seed, const geometry::Context& context) {
+    constexpr int kSamples = 1000;
+    std::vector<std::size_t> order(plan.part_of.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto size = [&](std::size_t item) {
+        return plan.part(item).hull_area * plan.part(item).diameter;
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+    Random random(seed);
+    Board board(plan);
+    PoseSearch search(board, random);
+    // Items not yet laid wait far outside, in nobody's way.
+    std::vector<Position> positions(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const Part& part = plan.part(i);
+        positions[i].angle_deg = part.turns_freely() ? 0.0 : part.allowed_deg.front();
+        positions[i].x = -1e6 * (1.0 + static_cast<double>(i));
+    }
+    Extent extent{1, first_width(plan)};
+    board.restore(positions, extent);
+    for (const std::size_t item : order) {
+        context.check();
+        Candidate found = search.leftmost(item, kSamples);
+        while (found.loss > 0.0F && widen(plan, extent)) {
+            positions = board.positions();
+            board.restore(positions, extent);
+            found = search.leftmost(item, kSamples);
+        }
+        if (found.loss <= 0.0F) {
+            board.move(item, found.position);
+        }
+    }
+    Packing packing{board.positions(), extent};
+    double right = 0.0;
+    for (std::size_t item = 0; item < board.items(); ++item) {
+        Position& at = packing.positions[item];
+        if (at.x < -1e5) {
+            at.bin = -1;
+        } else if (at.bin + 1 == extent.bins) {
+            right = std::max(right, at.x + static_cast<double>(board.shape(item).high_x));
+        }
+    }
+    packing.extent.last_width = std::min(extent.last_width, right * (1.0 + 1e-6));
+    return packing;
+}
+
+Packing compact(const BoardPlan& plan,
+                Packing start,
+                const CompactionOptions& options,
+                const geometry::Context& context,
+                const std::function<bool(const Packing&)>& accept) {
+    std::vector<std::unique_ptr<Explorer>> searches;
+    for (std::size_t i = 0; i < kSearches; ++i) {
+        searches.push_back(std::make_unique<Explorer>(plan, start, options.seed * 7919 + i));
+    }
+    Packing best = std::move(start);
+    double best_area = area_taken(plan, best.extent);
+    const double begun_s = context.now_s();
+    std::int64_t spent = 0;
+    std::int64_t idle_epochs = 0;
+    for (;;) {
+        const double by_work =
+            static_cast<double>(spent) / static_cast<double>(options.max_evaluations);
+        const double by_time =
+            options.time_s > 0.0 ? (context.now_s() - begun_s) / options.time_s : 0.0;
+        const double progress = std::max(by_work, by_time);
+        if (progress >= 1.0 || idle_epochs > 3) {
+            return best;
+        }
+        try {
+            context.report("nest", progress);
+            const std::int64_t left = (options.max_evaluations - spent) / 2 + 1;
+            run_epoch(searches, std::min(kEpoch, left), progress, context);
+        } catch (const geometry::Cancelled&) {
+            return best;
+        }
+        std::int64_t done = 0;
+        const Explorer* ahead = nullptr;
+        for (const auto& search : searches) {
+            done += search->evaluations();
+            if (search->best_area() < best_area &&
+                (ahead == nullptr || search->best_area() < ahead->best_area())) {
+                ahead = search.get();
+            }
+        }
+        idle_epochs = done == spent ? idle_epochs + 1 : 0;
+        spent = done;
+        best.evaluations = spent;
+        if (ahead != nullptr && accept(ahead->best())) {
+            best = ahead->best();
+            best.evaluations = spent;
+            best_area = ahead->best_area();
+        }
+        for (const auto& search : searches) {
+            if (search->best_area() != best_area) {
+                search->adopt(best);
+            }
+        }
+    }
+}
+
+}  // namespace leafcutter::fab

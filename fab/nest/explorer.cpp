@@ -1,0 +1,232 @@
+#include "fab/nest/explorer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace leafcutter::fab {
+
+namespace {
+
+constexpr double kFinestShrink = 0.001;
+constexpr double kLongestAttempt = 0.1;  // Of the whole search.
+
+// Items by hull, largest first, until they make up three quarters of the sum.
+std::vector<std::size_t> large_items(const BoardPlan& plan) {
+    std::vector<std::size_t> order(plan.part_of.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return plan.part(a).hull_area > plan.part(b).hull_area;
+    });
+    double whole = 0.0;
+    for (const std::size_t item : order) {
+        whole += plan.part(item).hull_area;
+    }
+    double sum = 0.0;
+    std::size_t count = 0;
+    while (count < order.size() && sum < 0.75 * whole) {
+        sum += plan.part(order[count++]).hull_area;
+    }
+    order.resize(count);
+    return order;
+}
+
+bool alike(const Part& a, const Part& b) {
+    return std::abs(a.area - b.area) <= 0.01 * std::max(a.area, b.area) &&
+           std::abs(a.diameter - b.diameter) <= 0.01 * std::max(a.diameter, b.diameter);
+}
+
+// Gives `position` the rotation of another part, or the nearest that it may have.
+void turn_like(const Part& part, double angle_deg, Position& position) {
+    if (part.turns_freely()) {
+        position.turn = 0;
+        position.angle_deg = angle_deg;
+        return;
+    }
+    double least = 1e9;
+    for (std::size_t i = 0; i < part.allowed_deg.size(); ++i) {
+        const double off = std::abs(std::remainder(part.allowed_deg[i] - angle_deg, 360.0));
+        if (off < least) {
+            least = off;
+            position.turn = static_cast<int>(i);
+            position.angle_deg = part.allowed_deg[i];
+        }
+    }
+}
+
+}  // namespace
+
+Explorer::Explorer(const BoardPlan& plan, const Packing& start, std::uint64_t seed)
+    : plan_(plan),
+      random_(seed),
+      board_(plan),
+      separation_(board_, random_),
+      search_(board_, random_),
+      large_(large_items(plan)),
+      best_(start),
+      best_area_(area_taken(plan, start.extent)) {
+    board_.restore(best_.positions, best_.extent);
+}
+
+void Explorer::adopt(const Packing& better) {
+    best_ = better;
+    best_area_ = area_taken(plan_, better.extent);
+    failed_.clear();
+    // An attempt at more than what is known to be possible is in vain.
+    if (working_ && area_taken(plan_, target_) >= best_area_) {
+        working_ = false;
+    }
+}
+
+void Explorer::advance(std::int64_t evaluations, double progress, const std::stop_token& stop) {
+    progress_ = progress;
+    if (working_ && compressing() && !compressed_) {
+        working_ = false;
+    }
+    const std::int64_t until = board_.evaluations() + evaluations;
+    while (board_.evaluations() < until) {
+        const std::int64_t before = board_.evaluations();
+        if (!working_) {
+            begin_attempt();
+        }
+        const Separation::State state = separation_.run(until, stop);
+        if (state == Separation::State::Feasible) {
+            succeed();
+        } else if (state == Separation::State::GaveUp || progress_ - begun_ > kLongestAttempt) {
+            fail();
+        }
+        if (board_.evaluations() == before) {
+            return;  // Nothing left to try.
+        }
+    }
+}
+
+void Explorer::begin_attempt() {
+    begun_ = progress_;
+    working_ = true;
+    compressed_ = compressing();
+    if (compressed_) {
+        begin_compressing();
+    } else {
+        begin_exploring();
+    }
+}
+
+void Explorer::begin_exploring() {
+    const Extent next = extent_of_area(plan_, best_area_ * (1.0 - shrink_));
+    const double middle = board_.width_of(board_.extent().bins - 1) / 2.0;
+    if (failed_.empty()) {
+        target_ = next;
+        attempt(best_.positions, best_.extent, target_, middle);
+        return;
+    }
+    // One of those that came near, a good one more likely, with two large parts swapped.
+    const double pick = std::min(0.25 * std::abs(random_.normal()), 0.999);
+    const auto index = static_cast<std::size_t>(pick * static_cast<double>(failed_.size()));
+    std::vector<Position> positions = failed_[index].positions;
+    disrupt(positions);
+    attempt(std::move(positions), target_, target_, middle);
+}
+
+void Explorer::begin_compressing() {
+    constexpr double kCoarse = 5e-4;
+    constexpr double kFine = 1e-5;
+    const double left = std::clamp((1.0 - progress_) / 0.2, 0.0, 1.0);
+    target_ = extent_of_area(plan_, best_area_ * (1.0 - (kFine + (kCoarse - kFine) * left)));
+    const double split = random_.unit() * board_.width_of(board_.extent().bins - 1);
+    attempt(best_.positions, best_.extent, target_, split);
+}
+
+// What lies right of `split` on the last sheet moves along with its edge.
+void Explorer::attempt(std::vector<Position> positions,
+                       const Extent& from,
+                       const Extent& to,
+                       double split) {
+    std::vector<std::size_t> homeless;
+    for (std::size_t item = 0; item < positions.size(); ++item) {
+        Position& at = positions[item];
+        if (at.bin >= to.bins) {
+            homeless.push_back(item);
+            at.bin = static_cast<int>(random_.below(static_cast<std::size_t>(to.bins)));
+        } else if (from.bins == to.bins && at.bin + 1 == to.bins && at.x > split) {
+            at.x += to.last_width - from.last_width;
+        }
+    }
+    board_.restore(positions, to);
+    rehome(homeless);
+    separation_.begin(compressed_ ? SeparationLimits{5, 100} : SeparationLimits{3, 200});
+}
+
+void Explorer::rehome(const std::vector<std::size_t>& homeless) {
+    for (const std::size_t item : homeless) {
+        board_.move(item, search_.best_for(item).position);
+    }
+}
+
+void Explorer::succeed() {
+    working_ = false;
+    best_ = {board_.positions(), board_.extent()};
+    best_area_ = area_taken(plan_, best_.extent);
+    failed_.clear();
+}
+
+void Explorer::fail() {
+    working_ = false;
+    if (compressed_) {
+        return;
+    }
+    if (shrink_ > kFinestShrink) {
+        // The step was too bold: a part of it may do.
+        shrink_ = std::max(kFinestShrink, 0.5 * shrink_);
+        failed_.clear();
+        return;
+    }
+    Failed failed{separation_.best(), separation_.best_loss()};
+    const auto at =
+        std::upper_bound(failed_.begin(), failed_.end(), failed,
+                         [](const Failed& a, const Failed& b) { return a.loss < b.loss; });
+    failed_.insert(at, std::move(failed));
+    constexpr std::size_t kMostKept = 40;
+    failed_.resize(std::min(failed_.size(), kMostKept));
+}
+
+// Swaps two large parts; small ones that lie within where one goes are carried to where it was.
+void Explorer::disrupt(std::vector<Position>& positions) {
+    const std::size_t first = large_[random_.below(large_.size())];
+    std::size_t second = random_.below(positions.size());
+    for (int tries = 0; tries < 20; ++tries) {
+        const std::size_t other = large_[random_.below(large_.size())];
+        if (other != first && !alike(plan_.part(first), plan_.part(other))) {
+            second = other;
+            break;
+        }
+    }
+    if (second == first) {
+        return;
+    }
+    const Position there = positions[second];
+    const Position here = positions[first];
+    positions[first] = there;
+    positions[second] = here;
+    turn_like(plan_.part(first), there.angle_deg, positions[first]);
+    turn_like(plan_.part(second), here.angle_deg, positions[second]);
+    const auto carry = [&](const Position& from, const Position& to, double reach) {
+        for (std::size_t item = 0; item < positions.size(); ++item) {
+            Position& at = positions[item];
+            const bool small = item != first && item != second && plan_.part(item).diameter < reach;
+            if (small && at.bin == from.bin &&
+                std::hypot(at.x - from.x, at.y - from.y) < 0.25 * reach) {
+                at.bin = to.bin;
+                at.x += to.x - from.x;
+                at.y += to.y - from.y;
+            }
+        }
+    };
+    if (plan_.part(first).diameter > 1.5 * plan_.part(second).diameter) {
+        carry(there, here, plan_.part(first).diameter);
+    } else if (plan_.part(second).diameter > 1.5 * plan_.part(first).diameter) {
+        carry(here, there, plan_.part(second).diameter);
+    }
+}
+
+}  // namespace leafcutter::fab

@@ -1,0 +1,24 @@
+// A first packing of many parts: the best of several heaps (construct.h).
+
+#pragma once
+
+#include <cstdint>
+
+#include "fab/nest/compaction.h"
+
+namespace leafcutter::fab {
+
+struct HeapStart {
+    Packing packing;
+    std::int64_t rows = 0;  // Of positions tried.
+};
+
+// Heaps in different orders, gravity towards the left edge of the sheets, which are all alike and
+// hold no fixed things; the one that takes least. Every part must fit an empty sheet. At least one
+// heap is built, more while `rows` last. Throws Cancelled if stopped before there is one.
+HeapStart heap_start(const BoardPlan& plan,
+                     std::int64_t rows,
+                     std::uint64_t seed,
+                     const geometry::Context& context);
+
+}  // namespace leafcutter::fab

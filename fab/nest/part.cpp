@@ -1,0 +1,252 @@
+#include "fab/nest/part.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "fab/nest/collision.h"
+#include "fab/nest/grow.h"
+
+namespace leafcutter::fab {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+// Far outside of everything, yet its square is a float.
+constexpr float kNowhere = 1e15F;
+
+double distance_to(const Ring& ring, const Eigen::Vector2d& point, Eigen::Vector2d& nearest) {
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Eigen::Vector2d& a = ring[i];
+        const Eigen::Vector2d along = ring[i + 1 < ring.size() ? i + 1 : 0] - a;
+        const double square = along.squaredNorm();
+        const double t = square > 0.0 ? std::clamp((point - a).dot(along) / square, 0.0, 1.0) : 0.0;
+        const Eigen::Vector2d foot = a + t * along;
+        const double distance = (foot - point).squaredNorm();
+        if (distance < best) {
+            best = distance;
+            nearest = foot;
+        }
+    }
+    return std::sqrt(best);
+}
+
+// The largest circle inside the ring that touches it at `foot`: shrinks one until nothing of the
+// ring is within (Ma, Bae and Choi, "3D medial axis point approximation using nearest neighbors and
+// the normal field", The Visual Computer 28, 2012).
+Circle touching_circle(const Ring& ring,
+                       const Eigen::Vector2d& foot,
+                       const Eigen::Vector2d& inward,
+                       double largest) {
+    constexpr int kMostSteps = 24;
+    double radius = largest;
+    Eigen::Vector2d nearest = foot;
+    for (int step = 0; step < kMostSteps; ++step) {
+        const double reached = distance_to(ring, foot + radius * inward, nearest);
+        if (reached >= radius * (1.0 - 1e-4)) {
+            break;
+        }
+        const Eigen::Vector2d chord = nearest - foot;
+        const double rise = chord.dot(inward);
+        if (rise <= 1e-12 * largest) {
+            return {};
+        }
+        radius = std::min(0.9999 * radius, chord.squaredNorm() / (2.0 * rise));
+    }
+    const Eigen::Vector2d centre = foot + radius * inward;
+    return {centre, contains(ring, centre) ? distance_to(ring, centre, nearest) : 0.0};
+}
+
+// Circles that touch the ring, from feet spread evenly along it.
+std::vector<Circle> medial_circles(const Ring& ring, double largest) {
+    double length = 0.0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        length += (ring[(i + 1) % ring.size()] - ring[i]).norm();
+    }
+    const double step = length / 240.0;
+    std::vector<Circle> circles;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Eigen::Vector2d along = ring[(i + 1) % ring.size()] - ring[i];
+        const double edge = along.norm();
+        if (edge <= 0.0) {
+            continue;
+        }
+        const Eigen::Vector2d inward(-along.y() / edge, along.x() / edge);
+        const int feet = std::max(1, static_cast<int>(std::ceil(edge / step)));
+        for (int k = 0; k < feet; ++k) {
+            const Eigen::Vector2d foot = ring[i] + along * (k + 0.5) / feet;
+            const Circle circle = touching_circle(ring, foot, inward, largest);
+            if (circle.radius > 0.0) {
+                circles.push_back(circle);
+            }
+        }
+    }
+    return circles;
+}
+
+std::size_t padded(std::size_t count) {
+    return (count + TurnedPart::kLanes - 1) / TurnedPart::kLanes * TurnedPart::kLanes;
+}
+
+void fill_edges(const std::vector<float>& x, const std::vector<float>& y, TurnedPart& out) {
+    const std::size_t count = x.size();
+    const std::size_t size = padded(count);
+    for (auto* array : {&out.x0, &out.y0, &out.x1, &out.y1}) {
+        array->assign(size, kNowhere);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t next = i + 1 < count ? i + 1 : 0;
+        out.x0[i] = x[i];
+        out.y0[i] = y[i];
+        out.x1[i] = x[next];
+        out.y1[i] = y[next];
+    }
+    out.edges = count;
+    out.blocks = size / TurnedPart::kLanes;
+}
+
+void fill_blocks(TurnedPart& out) {
+    for (auto* array : {&out.block_x0, &out.block_y0, &out.block_x1, &out.block_y1}) {
+        array->assign(padded(out.blocks), kNowhere);
+    }
+    for (std::size_t block = 0; block < out.blocks; ++block) {
+        const std::size_t first = block * TurnedPart::kLanes;
+        const std::size_t last = std::min(out.edges, first + TurnedPart::kLanes);
+        float low_x = out.x1[last - 1];
+        float low_y = out.y1[last - 1];
+        float high_x = low_x;
+        float high_y = low_y;
+        for (std::size_t i = first; i < last; ++i) {
+            low_x = std::min(low_x, out.x0[i]);
+            low_y = std::min(low_y, out.y0[i]);
+            high_x = std::max(high_x, out.x0[i]);
+            high_y = std::max(high_y, out.y0[i]);
+        }
+        out.block_x0[block] = low_x;
+        out.block_y0[block] = low_y;
+        out.block_x1[block] = high_x;
+        out.block_y1[block] = high_y;
+    }
+}
+
+double largest_distance(const Ring& ring) {
+    double square = 0.0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        for (std::size_t j = i + 1; j < ring.size(); ++j) {
+            square = std::max(square, (ring[i] - ring[j]).squaredNorm());
+        }
+    }
+    return std::sqrt(square);
+}
+
+}  // namespace
+
+std::vector<Circle> inscribed_circles(const Ring& ring, std::size_t most) {
+    const double area = std::abs(signed_area(ring));
+    std::vector<Circle> pool = medial_circles(ring, std::sqrt(area / std::numbers::pi) * 1.01);
+    std::vector<Circle> chosen;
+    double covered = 0.0;
+    const auto enough = [&] {
+        return chosen.size() >= most || (chosen.size() >= 16 && covered > 0.8 * area) ||
+               (chosen.size() >= 8 && covered > 0.9 * area);
+    };
+    // A circle of the pool shrinks as chosen ones come near.
+    while (!enough()) {
+        const auto best =
+            std::max_element(pool.begin(), pool.end(),
+                             [](const Circle& a, const Circle& b) { return a.radius < b.radius; });
+        if (best == pool.end() || best->radius <= 0.0 ||
+            (!chosen.empty() && best->radius < 0.02 * chosen.front().radius)) {
+            break;
+        }
+        const Circle circle = *best;
+        chosen.push_back(circle);
+        covered += std::numbers::pi * circle.radius * circle.radius;
+        for (Circle& other : pool) {
+            other.radius =
+                std::min(other.radius, (other.centre - circle.centre).norm() - circle.radius);
+        }
+    }
+    return chosen;
+}
+
+Part make_part(const Ring& outline, double grow, std::vector<double> allowed_deg) {
+    Part part;
+    part.outline = grown(outline, grow);
+    const NestShape shape = make_shape(part.outline);
+    part.origin = shape.centroid;
+    for (Eigen::Vector2d& point : part.outline) {
+        point -= part.origin;
+    }
+    part.allowed_deg = std::move(allowed_deg);
+    part.area = shape.area_mm2;
+    part.width = shape.width_mm;
+    part.diameter = largest_distance(part.outline);
+    part.hull_area = std::abs(signed_area(convex_hull(part.outline)));
+    constexpr std::size_t kMostCircles = 32;
+    part.circles = inscribed_circles(part.outline, kMostCircles);
+    for (Circle& circle : part.circles) {
+        circle.radius *= 1.0 - 1e-5;  // Two that touch must be two parts that overlap.
+    }
+    return part;
+}
+
+void turn_part(const Part& part, double angle_deg, TurnedPart& out) {
+    // Quarter turns are exact.
+    const double quarters = angle_deg / 90.0;
+    const bool exact = quarters == std::round(quarters);
+    const double c =
+        exact ? std::round(std::cos(angle_deg * kDegree)) : std::cos(angle_deg * kDegree);
+    const double s =
+        exact ? std::round(std::sin(angle_deg * kDegree)) : std::sin(angle_deg * kDegree);
+    static thread_local std::vector<float> x;
+    static thread_local std::vector<float> y;
+    x.resize(part.outline.size());
+    y.resize(part.outline.size());
+    for (std::size_t i = 0; i < part.outline.size(); ++i) {
+        const Eigen::Vector2d& p = part.outline[i];
+        x[i] = static_cast<float>(c * p.x() - s * p.y());
+        y[i] = static_cast<float>(s * p.x() + c * p.y());
+    }
+    fill_edges(x, y, out);
+    fill_blocks(out);
+    out.low_x = *std::min_element(x.begin(), x.end());
+    out.high_x = *std::max_element(x.begin(), x.end());
+    out.low_y = *std::min_element(y.begin(), y.end());
+    out.high_y = *std::max_element(y.begin(), y.end());
+    out.circles = part.circles.size();
+    out.circle_x.assign(padded(out.circles), kNowhere);
+    out.circle_y.assign(padded(out.circles), kNowhere);
+    out.circle_r.assign(padded(out.circles), 0.0F);
+    for (std::size_t i = 0; i < out.circles; ++i) {
+        const Eigen::Vector2d& p = part.circles[i].centre;
+        out.circle_x[i] = static_cast<float>(c * p.x() - s * p.y());
+        out.circle_y[i] = static_cast<float>(s * p.x() + c * p.y());
+        out.circle_r[i] = static_cast<float>(part.circles[i].radius);
+    }
+    out.diameter = static_cast<float>(part.diameter);
+    out.hull_area = static_cast<float>(part.hull_area);
+    out.hull_root = static_cast<float>(std::sqrt(std::sqrt(part.hull_area)));
+}
+
+void shift_part(TurnedPart& part, float dx, float dy) {
+    for (auto* array : {&part.x0, &part.x1, &part.block_x0, &part.block_x1, &part.circle_x}) {
+        for (float& x : *array) {
+            x += dx;
+        }
+    }
+    for (auto* array : {&part.y0, &part.y1, &part.block_y0, &part.block_y1, &part.circle_y}) {
+        for (float& y : *array) {
+            y += dy;
+        }
+    }
+    part.low_x += dx;
+    part.high_x += dx;
+    part.low_y += dy;
+    part.high_y += dy;
+}
+
+}  // namespace leafcutter::fab

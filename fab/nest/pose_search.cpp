@@ -1,0 +1,239 @@
+#include "fab/nest/pose_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace leafcutter::fab {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+struct Axis {
+    double x = 0.0;
+    double y = 0.0;
+    bool turn = false;
+};
+
+// A part's smaller bounding side, by which steps are measured; of a bent band the band's width
+// counts, since its bounds are far larger than what it takes.
+double step_unit(const Part& part, const TurnedPart& shape) {
+    const double side = std::min(shape.high_x - shape.low_x, shape.high_y - shape.low_y);
+    return std::min(side, std::max(4.0 * part.width, 0.1 * side));
+}
+
+}  // namespace
+
+double PoseSearch::loss_of(std::size_t item, const Position& position, float bound) {
+    return board_.loss_at(item, board_.turned(item, position, scratch_), position, bound);
+}
+
+void PoseSearch::random_turn(const Part& part, Position& position) {
+    if (part.turns_freely()) {
+        position.turn = 0;
+        position.angle_deg = random_.between(-180.0, 180.0);
+        return;
+    }
+    const std::size_t turn = random_.below(part.allowed_deg.size());
+    position.turn = static_cast<int>(turn);
+    position.angle_deg = part.allowed_deg[turn];
+}
+
+// Anywhere on the sheets, by their area. False if the part is too large for the sheet as it is
+// turned.
+bool PoseSearch::sample(std::size_t item, Position& position) {
+    const int bins = board_.extent().bins;
+    double area = 0.0;
+    for (int bin = 0; bin < bins; ++bin) {
+        area += board_.width_of(bin) * board_.height_of(bin);
+    }
+    double pick = random_.between(0.0, area);
+    position.bin = 0;
+    for (int bin = 0; bin + 1 < bins; ++bin) {
+        pick -= board_.width_of(bin) * board_.height_of(bin);
+        position.bin += pick >= 0.0 ? 1 : 0;
+    }
+    random_turn(board_.plan().part(item), position);
+    const TurnedPart& shape = board_.turned(item, position, scratch_);
+    const double x_play = board_.width_of(position.bin) - (shape.high_x - shape.low_x);
+    const double y_play = board_.height_of(position.bin) - (shape.high_y - shape.low_y);
+    if (x_play < 0.0 || y_play < 0.0) {
+        return false;
+    }
+    position.x = random_.between(0.0, x_play) - shape.low_x;
+    position.y = random_.between(0.0, y_play) - shape.low_y;
+    return true;
+}
+
+void PoseSearch::sample_near(std::size_t item, const Position& around, Position& position) {
+    const Part& part = board_.plan().part(item);
+    const TurnedPart& shape = board_.shape(item);
+    const double width = shape.high_x - shape.low_x;
+    const double height = shape.high_y - shape.low_y;
+    position = around;
+    if (part.turns_freely()) {
+        position.angle_deg = std::remainder(around.angle_deg + 12.0 * random_.normal(), 360.0);
+    } else {
+        random_turn(part, position);
+    }
+    position.x += random_.between(-0.5, 0.5) * width;
+    position.y += random_.between(-0.5, 0.5) * height;
+}
+
+void PoseSearch::keep(const Candidate& candidate) {
+    for (std::size_t i = 0; i < kept_count_; ++i) {
+        const Position& a = kept_[i].position;
+        const Position& b = candidate.position;
+        const bool same = a.bin == b.bin && std::abs(a.x - b.x) < apart_ &&
+                          std::abs(a.y - b.y) < apart_ &&
+                          std::abs(std::remainder(a.angle_deg - b.angle_deg, 360.0)) < 1.0;
+        if (same) {
+            if (candidate.loss < kept_[i].loss) {
+                kept_[i] = candidate;
+                std::sort(kept_, kept_ + kept_count_,
+                          [](const Candidate& p, const Candidate& q) { return p.loss < q.loss; });
+            }
+            return;
+        }
+    }
+    if (kept_count_ == kKept && candidate.loss >= kept_[kKept - 1].loss) {
+        return;
+    }
+    std::size_t slot = kept_count_ < kKept ? kept_count_++ : kKept - 1;
+    while (slot > 0 && kept_[slot - 1].loss > candidate.loss) {
+        kept_[slot] = kept_[slot - 1];
+        --slot;
+    }
+    kept_[slot] = candidate;
+}
+
+void PoseSearch::consider(std::size_t item, const Position& position) {
+    const float bound = kept_count_ == kKept ? kept_[kKept - 1].loss : kInfinity;
+    const auto loss = static_cast<float>(loss_of(item, position, bound));
+    if (loss < bound) {
+        keep({position, loss});
+    }
+}
+
+// Randomised coordinate descent; a step that fails shrinks, one that gains grows.
+void PoseSearch::descend(std::size_t item, Candidate& candidate, const Steps& steps) {
+    static constexpr std::array<Axis, 4> kAxes{{{1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}}};
+    const bool turns = board_.plan().part(item).turns_freely();
+    double step_x = steps.start;
+    double step_y = steps.start;
+    double step_turn = steps.turn_start_deg;
+    const auto pick = [&]() -> Axis {
+        if (turns && random_.below(3) == 0) {
+            return {0.0, 0.0, true};
+        }
+        return kAxes[random_.below(kAxes.size())];
+    };
+    Axis axis = pick();
+    while (candidate.loss > 0.0F &&
+           (std::max(step_x, step_y) > steps.end || (turns && step_turn > steps.turn_end_deg))) {
+        Position ahead = candidate.position;
+        Position back = candidate.position;
+        ahead.x += axis.x * step_x;
+        ahead.y += axis.y * step_y;
+        back.x -= axis.x * step_x;
+        back.y -= axis.y * step_y;
+        if (axis.turn) {
+            ahead.angle_deg = std::remainder(ahead.angle_deg + step_turn, 360.0);
+            back.angle_deg = std::remainder(back.angle_deg - step_turn, 360.0);
+        }
+        const auto ahead_loss = static_cast<float>(loss_of(item, ahead, candidate.loss));
+        const float bound = std::min(ahead_loss, candidate.loss);
+        const auto back_loss =
+            bound > 0.0F ? static_cast<float>(loss_of(item, back, bound)) : bound;
+        const bool forward = ahead_loss <= back_loss;
+        const float loss = forward ? ahead_loss : back_loss;
+        const bool better = loss < candidate.loss;
+        if (better) {
+            candidate = {forward ? ahead : back, loss};
+        }
+        const double factor = better ? 1.1 : 0.5;
+        if (axis.turn) {
+            step_turn *= factor;
+        } else if (axis.x != 0.0 && axis.y != 0.0) {
+            step_x *= std::sqrt(factor);
+            step_y *= std::sqrt(factor);
+        } else {
+            (axis.x != 0.0 ? step_x : step_y) *= factor;
+        }
+        axis = better ? axis : pick();
+    }
+}
+
+Candidate PoseSearch::best_for(std::size_t item) {
+    constexpr int kNear = 25;
+    constexpr int kAnywhere = 50;
+    const Part& part = board_.plan().part(item);
+    const Position now = board_.position(item);
+    const double unit = step_unit(part, board_.shape(item));
+    apart_ = 0.05 * unit;
+    kept_count_ = 0;
+    consider(item, now);
+    Position position;
+    for (int i = 0; i < kAnywhere; ++i) {
+        if (sample(item, position)) {
+            consider(item, position);
+        }
+    }
+    for (int i = 0; i < kNear; ++i) {
+        sample_near(item, now, position);
+        consider(item, position);
+    }
+    const Steps coarse{0.25 * unit, 0.02 * unit, 5.0, 1.0};
+    for (std::size_t i = 0; i < kept_count_; ++i) {
+        descend(item, kept_[i], coarse);
+    }
+    Candidate best =
+        *std::min_element(kept_, kept_ + kept_count_,
+                          [](const Candidate& a, const Candidate& b) { return a.loss < b.loss; });
+    descend(item, best, {0.01 * unit, 0.001 * unit, 0.5, 0.05});
+    return best;
+}
+
+Candidate PoseSearch::leftmost(std::size_t item, int samples) {
+    const auto score = [&](const Position& at) {
+        const TurnedPart& shape = board_.turned(item, at, scratch_);
+        return 1e6 * at.bin + 10.0 * (2.0 * at.x + shape.low_x) + 2.0 * at.y + shape.low_y;
+    };
+    Candidate best{board_.position(item), kInfinity};
+    double best_score = std::numeric_limits<double>::infinity();
+    Position position;
+    for (int i = 0; i < samples; ++i) {
+        if (!sample(item, position)) {
+            continue;
+        }
+        const double at = score(position);
+        if (at < best_score && loss_of(item, position, kInfinity) <= 0.0) {
+            best = {position, 0.0F};
+            best_score = at;
+        }
+    }
+    if (best.loss > 0.0F) {
+        return best;
+    }
+    // Pushed left and down as far as it goes.
+    const double unit =
+        step_unit(board_.plan().part(item), board_.turned(item, best.position, scratch_));
+    for (double step = unit; step > 0.002 * unit;) {
+        bool moved = false;
+        for (const Axis& axis : {Axis{-1.0, 0.0}, Axis{0.0, -1.0}, Axis{-1.0, 1.0}}) {
+            Position next = best.position;
+            next.x += axis.x * step;
+            next.y += axis.y * step;
+            if (loss_of(item, next, std::numeric_limits<float>::min()) <= 0.0) {
+                best.position = next;
+                moved = true;
+            }
+        }
+        step *= moved ? 1.0 : 0.5;
+    }
+    return best;
+}
+
+}  // namespace leafcutter::fab
