@@ -146,6 +146,90 @@ TEST(Weave, WeavesSeveralCylindersOneByOneAndSaysSo) {
     EXPECT_EQ(wanted.package.find("quads.obj")->bytes, quads);
 }
 
+// Two models as one, the second moved aside by `shift`.
+geometry::TriangleMesh side_by_side(geometry::TriangleMesh one,
+                                    const geometry::TriangleMesh& two,
+                                    double shift) {
+    const int base = static_cast<int>(one.positions.size());
+    for (const Eigen::Vector3d& point : two.positions) {
+        one.positions.emplace_back(point.x() + shift, point.y(), point.z());
+    }
+    for (const auto& [a, b, c] : two.triangles) {
+        one.triangles.push_back({base + a, base + b, base + c});
+    }
+    return one;
+}
+
+TEST(Weave, WeavesEachPartOrTheLargestAlone) {
+    const std::string model = geometry::write_obj(side_by_side(
+        geometry::make_sample("torus", 1500), geometry::make_sample("cylinder", 600), 20.0));
+    const PackageSummary both = weave_text(model, small_job(), "both.obj");
+    const std::string& report = both.package.find("report.json")->bytes;
+    EXPECT_EQ(number_behind(report, "components"), 2.0);
+    EXPECT_LT(number_behind(report, "left_out_area_percent"), 1e-6);
+    EXPECT_THAT(both.package.find("guide.html")->bytes, HasSubstr("Cylinder 2, part 2: "));
+    EXPECT_LT(number_behind(report, "largest_deviation_relative"), 1e-3);
+    JobParams largest = small_job();
+    largest.foliation.components = geometry::Components::Largest;
+    const PackageSummary one = weave_text(model, largest, "both.obj");
+    EXPECT_LT(one.quads, both.quads);
+    EXPECT_THAT(one.package.find("guide.html")->bytes, Not(HasSubstr("Cylinder 2")));
+    const std::string& of_one = one.package.find("report.json")->bytes;
+    EXPECT_GT(number_behind(of_one, "left_out_area_percent"), 5.0);
+    EXPECT_GE(number_behind(of_one, "removed_area_percent"),
+              number_behind(of_one, "left_out_area_percent"));
+}
+
+TEST(Weave, TellsWhereAHoleWasOpenedInNumbersOfTheFile) {
+    JobParams params = small_job();
+    const geometry::TriangleMesh tube = geometry::make_sample("cylinder", 3000);
+    // Halfway up, so that the hole stays clear of both ends.
+    int vertex = 0;
+    Eigen::Vector3d low = tube.positions.front();
+    Eigen::Vector3d high = low;
+    for (const Eigen::Vector3d& point : tube.positions) {
+        low = low.cwiseMin(point);
+        high = high.cwiseMax(point);
+    }
+    const auto off_middle = [&](std::size_t i) {
+        return std::abs(tube.positions[i].z() - 0.5 * (low.z() + high.z()));
+    };
+    for (std::size_t i = 0; i < tube.positions.size(); ++i) {
+        vertex = off_middle(i) < off_middle(static_cast<std::size_t>(vertex)) ? static_cast<int>(i)
+                                                                              : vertex;
+    }
+    params.foliation.puncture = geometry::PunctureChoice::Given;
+    params.foliation.punctures = {{vertex + 1, 4.0}};
+    // A vertex that nothing uses comes first: the file's numbers aren't the mesh's.
+    std::string model = "v 9 9 9\n";
+    for (const Eigen::Vector3d& point : tube.positions) {
+        model += fmt::format("v {} {} {}\n", point.x(), point.y(), point.z());
+    }
+    for (const auto& [a, b, c] : tube.triangles) {
+        model += fmt::format("f {} {} {}\n", a + 2, b + 2, c + 2);
+    }
+    const PackageSummary made = weave_text(model, params, "tube.obj");
+    const std::string& report = made.package.find("report.json")->bytes;
+    const std::size_t holes = report.find("\"punctures\":");
+    ASSERT_NE(holes, std::string::npos);
+    EXPECT_EQ(number_behind(report, "vertex", holes), vertex + 1.0);
+    EXPECT_NEAR(number_behind(report, "radius_mm", holes), 4.0, 1e-9);
+    const double lost =
+        0.01 * number_behind(report, "left_out_area_percent") * number_behind(report, "area_mm2");
+    EXPECT_NEAR(lost, std::numbers::pi * 16.0, 3.0);
+}
+
+TEST(Weave, WritesTheCriticalGraphWhereCylindersMeet) {
+    const std::string model = geometry::write_obj(geometry::make_sample("eight", 3000));
+    const PackageSummary made = weave_text(model, small_job(), "eight.obj");
+    const std::string& leaves = made.package.find("leaves.json")->bytes;
+    const std::size_t graph = leaves.find("\"critical_graph\":[{\"points\":[[");
+    EXPECT_NE(graph, std::string::npos);
+    const std::string& report = made.package.find("report.json")->bytes;
+    EXPECT_GT(number_behind(report, "largest_edge"), 0.5);
+    EXPECT_LT(number_behind(report, "flux_mismatch"), 1e-3);
+}
+
 TEST(Weave, RefusesUnknownMaterialsByTheirPath) {
     JobParams params = small_job();
     params.material.warp = "cheese";
