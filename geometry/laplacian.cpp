@@ -16,6 +16,7 @@ namespace {
 constexpr double kLargestWeight = 50.0;
 // Added to a diagonal that rounding has made singular, by the sum of its weights' sizes.
 constexpr double kRounding = 1e-10;
+constexpr double kHair = 1e-9;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -81,6 +82,35 @@ double dirichlet_energy(std::span<const WeightedEdge> edges,
     return 0.5 * sum;
 }
 
+namespace {
+
+// Fluxes through the levels between neighbouring places, from where they change.
+double relative_range(std::vector<std::pair<double, double>> changes) {
+    if (changes.empty()) {
+        return 0.0;
+    }
+    std::sort(changes.begin(), changes.end());
+    // Levels this close to the ends or to each other are told apart by rounding alone.
+    const double hair = kHair * (changes.back().first - changes.front().first);
+    const double first = changes.front().first + hair;
+    const double last = changes.back().first - hair;
+    double flux = 0.0;
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0.0;
+    for (std::size_t i = 0; i + 1 < changes.size(); ++i) {
+        flux += changes[i].second;
+        const double here = changes[i].first;
+        const double next = changes[i + 1].first;
+        if (next - here > hair && next > first && here < last) {
+            least = std::min(least, flux);
+            most = std::max(most, flux);
+        }
+    }
+    return most > 0.0 ? (most - least) / most : 0.0;
+}
+
+}  // namespace
+
 double flux_variation(std::span<const WeightedEdge> edges, const Eigen::VectorXd& values) {
     // The flux through the level c is the sum of w (high - low) over edges with low < c < high.
     std::vector<std::pair<double, double>> changes;
@@ -94,18 +124,7 @@ double flux_variation(std::span<const WeightedEdge> edges, const Eigen::VectorXd
             changes.emplace_back(std::max(a, b), -flux);
         }
     }
-    std::sort(changes.begin(), changes.end());
-    double flux = 0.0;
-    double least = std::numeric_limits<double>::infinity();
-    double most = 0.0;
-    for (std::size_t i = 0; i + 1 < changes.size(); ++i) {
-        flux += changes[i].second;
-        if (changes[i + 1].first > changes[i].first) {
-            least = std::min(least, flux);
-            most = std::max(most, flux);
-        }
-    }
-    return most > 0.0 ? (most - least) / most : 0.0;
+    return relative_range(std::move(changes));
 }
 
 HarmonicSolver::HarmonicSolver(std::span<const WeightedEdge> edges, const std::vector<char>& held)
