@@ -158,7 +158,7 @@ Foliation one_form(const SurfacePart& part,
     if (sinks.empty()) {
         sinks = all_but(part, sources);
     }
-    return foliate_one_form(part.mesh, part.loops, sources, sinks, options, context);
+    return foliate_one_form(part.mesh, part.loops, {sources, sinks}, options, context);
 }
 
 Foliation dispatch(const SurfacePart& part,

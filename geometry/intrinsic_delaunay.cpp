@@ -169,10 +169,9 @@ void make_delaunay(IntrinsicTriangulation& mesh) {
 
 std::vector<double> undo_flips(const IntrinsicTriangulation& triangulation,
                                std::vector<double> values) {
-    const auto& log = triangulation.flip_log;
-    for (auto flipped = log.rbegin(); flipped != log.rend(); ++flipped) {
+    for (std::size_t i = triangulation.flip_log.size(); i-- > 0;) {
         // The places of flip(), read backwards.
-        const auto [h, t] = *flipped;
+        const auto [h, t] = triangulation.flip_log[i];
         double& h1 = values[at(HalfEdges::next(h))];
         double& h2 = values[at(HalfEdges::previous(h))];
         double& t1 = values[at(HalfEdges::next(t))];

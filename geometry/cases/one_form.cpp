@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +19,8 @@
 #include "geometry/harmonic/leaf_cut.h"
 #include "geometry/harmonic/resolve.h"
 #include "geometry/harmonic/thin_parts.h"
+#include "geometry/parallel.h"
+#include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
 namespace {
@@ -35,6 +38,8 @@ constexpr double kMostTurn = 0.02;
 // Bounds of the error of all widths together, and of the whole surface's modulus.
 constexpr double kMostFluxError = 0.3;
 constexpr double kNotableError = 0.05;
+// Part of the whole time that the one-form takes, before the charts of its parts.
+constexpr double kSolveShare = 0.5;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -49,10 +54,8 @@ std::size_t at(int index) {
 }
 
 // What each loop is: bits of LoopBit.
-std::vector<std::uint8_t> loop_kinds(std::size_t count,
-                                     const std::vector<int>& sources,
-                                     const std::vector<int>& sinks) {
-    std::vector<std::uint8_t> kinds(count, kNaturalLoop | kBoundaryLoop);
+std::vector<std::uint8_t> loop_kinds(std::size_t count, const FlowEnds& ends) {
+    std::vector<std::uint8_t> kinds(count, NaturalLoop | BoundaryLoop);
     const auto name = [&](const std::vector<int>& loops, LoopBit bit, const std::string& what) {
         const std::string option = "foliation." + what;
         if (loops.empty()) {
@@ -67,15 +70,15 @@ std::vector<std::uint8_t> loop_kinds(std::size_t count,
                                                   "{}",
                                                   option, loop, count));
             }
-            if ((kinds[at(loop)] & kNaturalLoop) == 0) {
+            if ((kinds[at(loop)] & NaturalLoop) == 0) {
                 refuse("bad-" + what,
                        fmt::format("{}: boundary loop {} is named twice", option, loop));
             }
-            kinds[at(loop)] = static_cast<std::uint8_t>(bit | kBoundaryLoop);
+            kinds[at(loop)] = static_cast<std::uint8_t>(bit | BoundaryLoop);
         }
     };
-    name(sources, kSourceLoop, "sources");
-    name(sinks, kSinkLoop, "sinks");
+    name(ends.sources, SourceLoop, "sources");
+    name(ends.sinks, SinkLoop, "sinks");
     return kinds;
 }
 
@@ -158,7 +161,7 @@ std::vector<char> edges_near(const ChartSurface& surface, const std::vector<int>
 void check_orders(const SolvedForm& solved, int euler) {
     int doubled = 0;
     for (const FormZero& zero : solved.zeros) {
-        const bool natural = (solved.surface.lines[at(zero.vertex)] & kNaturalLoop) != 0;
+        const bool natural = (solved.surface.lines[at(zero.vertex)] & NaturalLoop) != 0;
         doubled += natural ? zero.lines : zero.lines - 2;
     }
     if (doubled != -2 * euler) {
@@ -197,10 +200,10 @@ SolvedForm solve_form(ChartSurface surface, Refinement refinement, const Context
     }
 }
 
-Foliation chart_of(const FormPart& part,
-                   const RectangleBorder& border,
-                   const FoliationOptions& options,
-                   const Context& context) {
+Foliation rectangle_of(const FormPart& part,
+                       const RectangleBorder& border,
+                       const FoliationOptions& options,
+                       const Context& context) {
     try {
         return foliate_rectangle(part.mesh, border, options, context);
     } catch (const Error& error) {
@@ -216,36 +219,40 @@ Foliation chart_of(const FormPart& part,
 
 // The chart of one part. Along seams f is held at the whole surface's: rows of neighbouring parts
 // meet.
-void add_part(Foliation& foliation,
-              const FormPart& part,
-              const CutSurface& cut,
-              const FoliationOptions& options,
-              const Context& context) {
+Foliation chart_of(const CutSurface& cut,
+                   const FormPart& part,
+                   const FoliationOptions& options,
+                   const Context& context) {
     std::vector<double> f;
     f.reserve(part.source_vertex.size());
     for (const int v : part.source_vertex) {
         f.push_back(cut.f[at(v)]);
     }
-    Foliation chart = chart_of(part, {part.loop, part.corners, f}, options, context);
-    Cylinder& cylinder = chart.cylinders.front();
-    cylinder.graph_edge = static_cast<int>(foliation.cylinders.size());
-    for (int& source : cylinder.source_vertex) {
+    Foliation chart = rectangle_of(part, {part.loop, part.corners, f}, options, context);
+    for (int& source : chart.cylinders.front().source_vertex) {
         source = source < 0 ? -1 : cut.surface.source_vertex[at(part.source_vertex[at(source)])];
     }
-    for (const std::string& warning : chart.warnings) {
-        foliation.warnings.push_back(fmt::format("part {}: {}", cylinder.graph_edge, warning));
-    }
-    foliation.graph.edges.push_back({0, 1, 1.0});
-    foliation.cylinders.push_back(std::move(cylinder));
+    return chart;
 }
 
-double area_of(const TriangleMesh& mesh) {
-    double area = 0.0;
-    for (const auto& t : mesh.triangles) {
-        const Eigen::Vector3d& a = mesh.positions[at(t[0])];
-        area += 0.5 * (mesh.positions[at(t[1])] - a).cross(mesh.positions[at(t[2])] - a).norm();
+void add_charts(Foliation& foliation,
+                const CutSurface& cut,
+                const FoliationOptions& options,
+                const Context& context) {
+    const std::vector<FormPart> parts = separate_parts(cut);
+    std::vector<Foliation> charts(parts.size());
+    for_each_task(parts.size(), context, [&](std::size_t k, const Context& own) {
+        charts[k] = chart_of(cut, parts[k], options, own);
+    });
+    for (std::size_t k = 0; k < charts.size(); ++k) {
+        for (const std::string& warning : charts[k].warnings) {
+            foliation.warnings.push_back(fmt::format("part {}: {}", k, warning));
+        }
+        Cylinder& cylinder = charts[k].cylinders.front();
+        cylinder.graph_edge = static_cast<int>(k);
+        foliation.graph.edges.push_back({0, 1, 1.0});
+        foliation.cylinders.push_back(std::move(cylinder));
     }
-    return area;
 }
 
 // All parts together are the surface, and their widths its flux.
@@ -253,7 +260,7 @@ void check_whole(const Foliation& foliation, const SolvedForm& solved, double ar
     double covered = 0.0;
     double width = 0.0;
     for (const Cylinder& cylinder : foliation.cylinders) {
-        covered += area_of(cylinder.mesh);
+        covered += surface_area(cylinder.mesh);
         width += cylinder.width;
     }
     if (!(std::abs(covered - area) <= 1e-6 * area)) {
@@ -292,6 +299,17 @@ void add_singularities(Foliation& foliation, const CutSurface& cut) {
     }
 }
 
+// For work that is the first `share` of the whole.
+Context first_part_of(const Context& context, double share) {
+    Context first = context;
+    if (context.progress) {
+        first.progress = [&context, share](std::string_view stage, double fraction) {
+            context.progress(stage, share * fraction);
+        };
+    }
+    return first;
+}
+
 Foliation between_two_loops(const TriangleMesh& mesh,
                             const std::array<std::vector<int>, 2>& loops,
                             const FoliationOptions& options,
@@ -306,11 +324,10 @@ Foliation between_two_loops(const TriangleMesh& mesh,
 
 Foliation foliate_one_form(const TriangleMesh& mesh,
                            const std::vector<std::vector<int>>& loops,
-                           const std::vector<int>& sources,
-                           const std::vector<int>& sinks,
+                           const FlowEnds& ends,
                            const FoliationOptions& options,
                            const Context& context) {
-    const std::vector<std::uint8_t> kinds = loop_kinds(loops.size(), sources, sinks);
+    const std::vector<std::uint8_t> kinds = loop_kinds(loops.size(), ends);
     std::vector<std::uint8_t> lines(mesh.positions.size(), 0);
     for (std::size_t k = 0; k < loops.size(); ++k) {
         for (const int v : loops[k]) {
@@ -320,16 +337,16 @@ Foliation foliate_one_form(const TriangleMesh& mesh,
     ChartSurface start = start_surface(mesh, std::move(lines));
     const int euler = euler_characteristic(start.edges, start.mesh.positions.size());
     if (euler == 0) {
-        return between_two_loops(mesh, {loops[at(sources.front())], loops[at(sinks.front())]},
+        return between_two_loops(mesh,
+                                 {loops[at(ends.sources.front())], loops[at(ends.sinks.front())]},
                                  options, context);
     }
-    const SolvedForm solved = solve_form(std::move(start), options.refinement, context);
+    const SolvedForm solved =
+        solve_form(std::move(start), options.refinement, first_part_of(context, kSolveShare));
     check_orders(solved, euler);
-    context.report("foliation", 0.4);
+    context.report("foliation", kSolveShare);
     CutSurface cut = cut_along_leaves(solved.surface, solved.form, solved.zeros, context);
     const int joined = join_thin_parts(cut, kThinPart, context);
-    const std::vector<FormPart> parts = separate_parts(cut);
-    context.report("foliation", 0.5);
 
     Foliation foliation;
     foliation.mode = FoliationMode::OneForm;
@@ -338,20 +355,15 @@ Foliation foliate_one_form(const TriangleMesh& mesh,
     foliation.iterations = 1;
     add_singularities(foliation, cut);
     foliation.critical_graph = cut_lines(cut);
-    Context quiet = context;
-    quiet.progress = nullptr;
-    for (const FormPart& part : parts) {
-        add_part(foliation, part, cut, options, quiet);
-        context.report("foliation", 0.5 + 0.5 * static_cast<double>(foliation.cylinders.size()) /
-                                              static_cast<double>(parts.size()));
-    }
-    check_whole(foliation, solved, area_of(mesh));
+    add_charts(foliation, cut, options, context);
+    check_whole(foliation, solved, surface_area(mesh));
     warn_of_errors(foliation, solved, cut.worst_turn);
     if (joined > 0) {
         foliation.warnings.push_back(
             fmt::format("{} parts of almost no width were joined to their neighbours", joined));
     }
     foliation.spread = cell_spread(foliation.cylinders);
+    context.report("foliation", 1.0);
     return foliation;
 }
 

@@ -10,7 +10,13 @@
 
 namespace leafcutter::geometry {
 
-// `sources` and `sinks` index into `loops`, all boundary loops of the connected `mesh`, surface to
+// Boundary loops, by their numbers.
+struct FlowEnds {
+    std::vector<int> sources;
+    std::vector<int> sinks;
+};
+
+// `ends` index into `loops`, all boundary loops of the connected `mesh`, surface to
 // the left. Loops named in neither are natural: no flux passes them, they are leaves of F*.
 //
 // The cylinders are rectangles of height 1, or one annulus for a surface without zeros; their f
@@ -23,8 +29,7 @@ namespace leafcutter::geometry {
 // compute_foliation does.
 Foliation foliate_one_form(const TriangleMesh& mesh,
                            const std::vector<std::vector<int>>& loops,
-                           const std::vector<int>& sources,
-                           const std::vector<int>& sinks,
+                           const FlowEnds& ends,
                            const FoliationOptions& options,
                            const Context& context);
 

@@ -18,8 +18,8 @@ Eigen::VectorXd between_sources_and_sinks(const std::vector<WeightedEdge>& edges
     std::vector<char> held(lines.size(), 0);
     Eigen::VectorXd f = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(lines.size()));
     for (std::size_t v = 0; v < lines.size(); ++v) {
-        held[v] = (lines[v] & (kSourceLoop | kSinkLoop)) != 0 ? 1 : 0;
-        f[static_cast<Eigen::Index>(v)] = (lines[v] & kSinkLoop) != 0 ? 1.0 : 0.0;
+        held[v] = (lines[v] & (SourceLoop | SinkLoop)) != 0 ? 1 : 0;
+        f[static_cast<Eigen::Index>(v)] = (lines[v] & SinkLoop) != 0 ? 1.0 : 0.0;
     }
     return HarmonicSolver(edges, held).solve(std::move(f));
 }
@@ -77,7 +77,7 @@ NaturalLoops join_natural_loops(const IntrinsicTriangulation& mesh,
     natural.offset.assign(lines.size(), 0.0);
     for (const std::vector<int>& walk : boundary_walks(mesh.edges)) {
         const int first = mesh.edges.from_of(walk.front());
-        if ((lines[at(first)] & kNaturalLoop) == 0) {
+        if ((lines[at(first)] & NaturalLoop) == 0) {
             continue;
         }
         for (std::size_t i = 0; i + 1 < walk.size(); ++i) {
@@ -141,7 +141,7 @@ ConjugateForm solve_conjugate_form(const ChartSurface& surface) {
         const int twin = surface.edges.twin_of(h);
         if (twin > h) {
             form.rise[at(twin)] = -form.rise[at(h)];  // Exactly.
-        } else if (twin < 0 && (surface.lines[at(surface.edges.from_of(h))] & kNaturalLoop) != 0) {
+        } else if (twin < 0 && (surface.lines[at(surface.edges.from_of(h))] & NaturalLoop) != 0) {
             form.rise[at(h)] = 0.0;
         }
     }

@@ -17,10 +17,10 @@ namespace leafcutter::geometry {
 
 // Bits of ChartSurface::lines.
 enum LoopBit : std::uint8_t {
-    kSourceLoop = 1,    // f = 0.
-    kSinkLoop = 2,      // f = 1.
-    kNaturalLoop = 4,   // No flux passes: a leaf of F*.
-    kBoundaryLoop = 8,  // Every loop: then no interior edge joins boundary vertices.
+    SourceLoop = 1,    // f = 0.
+    SinkLoop = 2,      // f = 1.
+    NaturalLoop = 4,   // No flux passes: a leaf of F*.
+    BoundaryLoop = 8,  // Every loop: then no interior edge joins boundary vertices.
 };
 
 struct ConjugateForm {

@@ -54,10 +54,10 @@ Side side_of(const CutSurface& cut, int h) {
     }
     const unsigned lines =
         cut.surface.lines[at(edges.from_of(h))] & cut.surface.lines[at(edges.to_of(h))];
-    if ((lines & kSourceLoop) != 0) {
+    if ((lines & SourceLoop) != 0) {
         return Side::Bottom;
     }
-    return (lines & kSinkLoop) != 0 ? Side::Top : Side::Flank;
+    return (lines & SinkLoop) != 0 ? Side::Top : Side::Flank;
 }
 
 std::vector<int> walk_border(const CutSurface& cut, int start) {

@@ -62,7 +62,7 @@ Signs signs_around(const HalfEdges& edges,
 }
 
 bool is_regular_on_loop(const Signs& signs, std::uint8_t lines) {
-    const bool forward = (lines & kSourceLoop) != 0;
+    const bool forward = (lines & SourceLoop) != 0;
     return signs.changes == 1 && signs.first == forward && signs.last != forward;
 }
 
@@ -96,10 +96,10 @@ void make_loops_monotone(const ChartSurface& surface, std::vector<double>& rise)
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(surface.mesh.positions.size()));
     for (const std::vector<int>& walk : boundary_walks(edges)) {
         const std::uint8_t lines = surface.lines[at(edges.from_of(walk.front()))];
-        if ((lines & kNaturalLoop) != 0) {
+        if ((lines & NaturalLoop) != 0) {
             continue;
         }
-        const double sign = (lines & kSourceLoop) != 0 ? 1.0 : -1.0;
+        const double sign = (lines & SourceLoop) != 0 ? 1.0 : -1.0;
         std::vector<double> steps;
         std::vector<double> least;
         double sum = 0.0;
@@ -189,9 +189,9 @@ FormZeros find_zeros(const ChartSurface& surface, const std::vector<double>& ris
             continue;
         }
         const std::uint8_t lines = surface.lines[at(v)];
-        const bool natural = (lines & kNaturalLoop) != 0;
+        const bool natural = (lines & NaturalLoop) != 0;
         const Signs signs = signs_around(surface.edges, rise, first[at(v)], natural);
-        if ((lines & (kSourceLoop | kSinkLoop)) != 0) {
+        if ((lines & (SourceLoop | SinkLoop)) != 0) {
             if (!is_regular_on_loop(signs, lines)) {
                 found.irregular.push_back(v);
             }

@@ -64,7 +64,7 @@ private:
     // The half-edge out of `vertex` to the right of the next leaf that is not cut yet, or -1.
     int free_sector(int vertex) const {
         const int start = outgoing_[at(vertex)];
-        const bool natural = (out_.surface.lines[at(vertex)] & kNaturalLoop) != 0;
+        const bool natural = (out_.surface.lines[at(vertex)] & NaturalLoop) != 0;
         for (int h = start; h >= 0;) {
             const int back = HalfEdges::previous(h);
             const bool bordered = out_.cut[at(h)] != 0 || out_.cut[at(back)] != 0 ||
@@ -107,10 +107,10 @@ private:
 
     int finish(int x, const std::vector<double>& values) {
         const std::uint8_t lines = out_.surface.lines[at(x)];
-        if ((lines & (kSourceLoop | kSinkLoop)) == 0) {
+        if ((lines & (SourceLoop | SinkLoop)) == 0) {
             fail("a leaf of F* ends at a natural loop");
         }
-        const bool up = (lines & kSinkLoop) != 0;
+        const bool up = (lines & SinkLoop) != 0;
         double best = values.front();
         for (const double value : values) {
             best = up ? std::max(best, value) : std::min(best, value);

@@ -10,9 +10,8 @@
 #include <queue>
 #include <utility>
 
-#include <Eigen/Geometry>
-
 #include "geometry/harmonic/form_parts.h"
+#include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
 namespace {
@@ -227,15 +226,6 @@ bool has_neighbours(const CutSurface& cut,
     });
 }
 
-double area_of(const TriangleMesh& mesh) {
-    double area = 0.0;
-    for (const auto& t : mesh.triangles) {
-        const Eigen::Vector3d& a = mesh.positions[at(t[0])];
-        area += 0.5 * (mesh.positions[at(t[1])] - a).cross(mesh.positions[at(t[2])] - a).norm();
-    }
-    return area;
-}
-
 bool join_to_neighbours(CutSurface& cut, const FormPart& part) {
     const std::array<Flank, 2> flanks = flanks_of(part);
     if (!has_neighbours(cut, part, flanks)) {
@@ -264,7 +254,7 @@ bool join_to_neighbours(CutSurface& cut, const FormPart& part) {
 
 int join_thin_parts(CutSurface& cut, double share, const Context& context) {
     int joined = 0;
-    const double area = area_of(cut.surface.mesh);
+    const double area = surface_area(cut.surface.mesh);
     for (;;) {
         context.check();
         std::vector<FormPart> parts = separate_parts(cut);
@@ -274,7 +264,7 @@ int join_thin_parts(CutSurface& cut, double share, const Context& context) {
             std::accumulate(parts.begin(), parts.end(), 0.0,
                             [](double sum, const FormPart& part) { return sum + part.flux; });
         const bool any = std::any_of(parts.begin(), parts.end(), [&](const FormPart& part) {
-            return part.flux < share * flux && area_of(part.mesh) < share * area &&
+            return part.flux < share * flux && surface_area(part.mesh) < share * area &&
                    join_to_neighbours(cut, part);
         });
         if (!any || parts.size() == 1) {

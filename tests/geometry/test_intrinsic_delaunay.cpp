@@ -1,5 +1,7 @@
 #include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -134,6 +136,31 @@ TEST(IntrinsicDelaunay, GivesFiniteWeightsOnFlatAndPointLikeTriangles) {
     for (const WeightedEdge& edge : cotangent_edges(result)) {
         EXPECT_TRUE(std::isfinite(edge.weight));
         EXPECT_LT(std::abs(edge.weight), 1e12);
+    }
+}
+
+TEST(IntrinsicDelaunay, UndoesItsFlipsForACochain) {
+    std::minstd_rand random(9);
+    TriangleMesh torus = make_torus(12, 20, 0.4);
+    jitter(torus, 0.05, random);
+    add_needles(torus, 60, random);
+    const HalfEdges edges =
+        build_half_edges(torus.triangles, static_cast<int>(torus.positions.size()));
+    const Cochain class_of = cohomology_basis(edges, static_cast<int>(torus.positions.size()))[0];
+    std::vector<Jump> jump;
+    for (const int value : class_of) {
+        jump.push_back({value, 0});
+    }
+    const IntrinsicTriangulation result = intrinsic_delaunay(torus, edges, jump);
+    EXPECT_GT(result.flips, 20);
+    std::vector<double> values;
+    for (int h = 0; h < result.edges.size(); ++h) {
+        values.push_back(result.jump[at(h)][0] + 3.0 * result.edges.to_of(h) -
+                         3.0 * result.edges.from_of(h));
+    }
+    values = undo_flips(result, std::move(values));
+    for (int h = 0; h < edges.size(); ++h) {
+        ASSERT_EQ(values[at(h)], class_of[at(h)] + 3.0 * edges.to_of(h) - 3.0 * edges.from_of(h));
     }
 }
 
