@@ -225,6 +225,7 @@ export const en = {
     alternatives: 'Layouts looked at',
     columns: { name: 'Layout', largest: 'Largest cells', variation: 'Variation', removed: 'Not covered' },
     chosen: 'chosen',
+    more: (count: number) => `${count} more ways to cut the same`,
     recompute: 'Weave like this',
   },
 

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { evennessOf, reportFigures } from './report.ts';
+import { evennessOf, reportFigures, sortedAlternatives } from './report.ts';
 
 test('figures that a report does not carry are left out, not shown as zero', () => {
   const { quality, facts } = reportFigures({
@@ -54,4 +54,16 @@ test('a report without a foliation has no figures of one', () => {
 
 test('cells are called coarse only where they are far larger than the mean', () => {
   assert.deepEqual([1, 3.4, 40].map(evennessOf), ['even', 'uneven', 'coarse']);
+});
+
+test('the chosen layout comes first, ways to cut the same surface apart', () => {
+  const one = (name: string, largest: number, chosen = false) => ({ name, largest, variation: 1, removedPercent: 0, chosen });
+  const { first, rest } = sortedAlternatives([
+    one('sphere-pillowcase', 9),
+    one('pants with 5 holes: pants reeb-x, equal weights', 2),
+    one('pants with 4 holes', 5),
+    one('pants with 5 holes', 6, true),
+  ]);
+  assert.deepEqual(first.map(({ name }) => name), ['pants with 5 holes', 'pants with 4 holes', 'sphere-pillowcase']);
+  assert.deepEqual(rest.map(({ name }) => name), ['pants with 5 holes: pants reeb-x, equal weights']);
 });

@@ -117,6 +117,17 @@ function foliationFigures(report: Report): FoliationFigures | null {
   };
 }
 
+// The chosen one first, then the others by the size of their largest cells. Ways to cut one and the same
+// surface ("pants reeb-x, equal weights") come after what differs more.
+export function sortedAlternatives(all: readonly Alternative[]): {
+  readonly first: readonly Alternative[];
+  readonly rest: readonly Alternative[];
+} {
+  const sorted = [...all].sort((a, b) => Number(b.chosen) - Number(a.chosen) || a.largest - b.largest);
+  const isWayToCut = ({ name, chosen }: Alternative): boolean => !chosen && /(^|: )pants \S+, /.test(name);
+  return { first: sorted.filter((one) => !isWayToCut(one)), rest: sorted.filter(isWayToCut) };
+}
+
 export type Evenness = 'even' | 'uneven' | 'coarse';
 
 // How much the largest cells stand out, given their edge in mean edges.

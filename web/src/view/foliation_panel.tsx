@@ -5,7 +5,7 @@ import type { Job } from '../api/types.ts';
 import { figure } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
 import { alternativeParams, modeNamed } from '../state/recompute.ts';
-import { type Alternative, evennessOf, type FoliationFigures } from '../state/report.ts';
+import { type Alternative, evennessOf, type FoliationFigures, sortedAlternatives } from '../state/report.ts';
 import { attempt, go, receive } from '../state/store.ts';
 import { Panel } from './controls.tsx';
 import { Fact } from './report_panel.tsx';
@@ -51,12 +51,11 @@ function AlternativeRow(props: { readonly job: Job; readonly one: Alternative })
   );
 }
 
-function Alternatives(props: { readonly job: Job; readonly all: readonly Alternative[] }) {
-  if (props.all.length === 0) return null;
+function AlternativeTable(props: { readonly job: Job; readonly rows: readonly Alternative[] }) {
   const { name, largest, variation, removed } = words.columns;
   return (
     <table class="alternatives">
-      <caption>{words.alternatives}</caption>
+      <caption class="visually-hidden">{words.alternatives}</caption>
       <thead>
         <tr>
           {[name, largest, variation, removed].map((title) => (
@@ -67,11 +66,28 @@ function Alternatives(props: { readonly job: Job; readonly all: readonly Alterna
         </tr>
       </thead>
       <tbody>
-        {props.all.map((one) => (
+        {props.rows.map((one) => (
           <AlternativeRow key={one.name} job={props.job} one={one} />
         ))}
       </tbody>
     </table>
+  );
+}
+
+function Alternatives(props: { readonly job: Job; readonly all: readonly Alternative[] }) {
+  const { first, rest } = sortedAlternatives(props.all);
+  if (first.length === 0) return null;
+  return (
+    <div>
+      <h3>{words.alternatives}</h3>
+      <AlternativeTable job={props.job} rows={first} />
+      {rest.length > 0 && (
+        <details>
+          <summary>{words.more(rest.length)}</summary>
+          <AlternativeTable job={props.job} rows={rest} />
+        </details>
+      )}
+    </div>
   );
 }
 
