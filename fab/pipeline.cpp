@@ -201,6 +201,8 @@ private:
                 "later");
         }
         result_.quads = geometry::build_quad_mesh(result_.foliation, grid, context);
+        warnings_.insert(warnings_.end(), result_.quads.warnings.begin(),
+                         result_.quads.warnings.end());
         const geometry::ClosestPoint surface(geometry::to_triangle_mesh(mesh_));
         result_.surface_area_mm2 = surface.total_area();
         result_.woven_area_mm2 = woven_area(result_.foliation);

@@ -31,6 +31,9 @@ constexpr double kClearDirection = 0.2;
 // Graded grids may come this much less close on average, if the largest distance falls.
 constexpr double kWorseMean = 1.2;
 
+// Of the number of cells, where wide ones would fold over.
+constexpr int kMostDoublings = 5;
+
 void refuse(const std::string& path, const std::string& what) {
     throw Error(ErrorKind::NotSupported, "not-supported-yet", path + ": " + what);
 }
@@ -240,6 +243,38 @@ CylinderGrid closest_grid(const Work& work,
     return even;
 }
 
+// The cylinder's quads at the wished size, or smaller ones where those would face inwards: a few
+// cells can't follow a small cylinder that bends sharply.
+void add_fine_enough(QuadMesh& mesh,
+                     const Work& work,
+                     GridWish wish,
+                     const GridOptions& options,
+                     const Context& context) {
+    const bool may_refine = !wish.counts.rows || !wish.counts.cols;
+    for (int doublings = 0;; ++doublings) {
+        CylinderGrid grid = choose_grid(work.chart, wish);
+        if (options.spacing != Spacing::Uniform) {
+            grid = closest_grid(work, grid, options, context);
+        }
+        try {
+            add_cylinder(mesh, work, grid, options, context);
+        } catch (const Error& error) {
+            if (error.code() != "quads-inverted" || !may_refine || doublings == kMostDoublings) {
+                throw;
+            }
+            wish.cells *= 2.0;
+            continue;
+        }
+        if (doublings > 0) {
+            mesh.warnings.push_back(
+                fmt::format("cylinder {}: has narrower strips than asked for, as wider ones would "
+                            "fold over",
+                            work.cylinder));
+        }
+        return;
+    }
+}
+
 }  // namespace
 
 QuadMesh build_quad_mesh(const Foliation& foliation,
@@ -254,11 +289,7 @@ QuadMesh build_quad_mesh(const Foliation& foliation,
         const Work work{
             .cylinder = i, .chart = chart, .sampler = sampler, .area = surface_area(chart.mesh)};
         context.check();
-        CylinderGrid grid = choose_grid(chart, wish_for(i, work.area, options));
-        if (options.spacing != Spacing::Uniform) {
-            grid = closest_grid(work, grid, options, context);
-        }
-        add_cylinder(mesh, work, grid, options, context);
+        add_fine_enough(mesh, work, wish_for(i, work.area, options), options, context);
     }
     return mesh;
 }

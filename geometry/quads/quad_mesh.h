@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -69,6 +70,8 @@ struct QuadMesh {
     std::vector<std::array<int, 4>> quads;
     std::vector<QuadAddress> addresses;  // Per quad. Quads are sorted by (cylinder, row, col).
     std::vector<CylinderGrid> grids;     // Per cylinder.
+
+    std::vector<std::string> warnings;
 
     // Per quad the area of the surface it stands for: the part of the chart inside its cell, mm².
     std::vector<double> surface_area;
