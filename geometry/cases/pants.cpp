@@ -37,6 +37,8 @@ constexpr double kLeastEdgeWeight = 1e-3;
 constexpr double kNotableExcess = 0.1;
 constexpr double kImpossibleExcess = 1.0;
 constexpr double kAreaTolerance = 1e-6;
+// A cylinder with less of the surface has all but collapsed.
+constexpr double kSqueezedShare = 1e-4;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -166,6 +168,21 @@ void check_energy(const Foliation& foliation, std::vector<std::string>& warnings
     }
 }
 
+// A graph edge that nothing of the surface is mapped to ends the job in slicing; one that hardly
+// anything is mapped to is worth a word.
+void report_squeezed(const Sliced& sliced, double whole, std::vector<std::string>& warnings) {
+    for (std::size_t e = 0; e < sliced.pieces.size(); ++e) {
+        const double share = area_of(sliced.pieces[e].mesh) / whole;
+        if (share < kSqueezedShare) {
+            warnings.push_back(
+                fmt::format("cylinder {} has nearly collapsed: it holds {:.2g} % of "
+                            "the surface; give it less weight, or another "
+                            "foliation.function",
+                            e, 100.0 * share));
+        }
+    }
+}
+
 Foliation assemble(Solved solved, const FoliationOptions& options, const Context& context) {
     Foliation foliation;
     foliation.mode = FoliationMode::Pants;
@@ -175,6 +192,7 @@ Foliation assemble(Solved solved, const FoliationOptions& options, const Context
     if (!solved.report.converged) {
         foliation.warnings.emplace_back("the harmonic map stopped before it was quite still");
     }
+    report_squeezed(solved.sliced, area_of(solved.mesh), foliation.warnings);
     for (const Eigen::Vector3d& position : solved.sliced.three_prongs) {
         foliation.singularities.push_back({position, 3});
     }
