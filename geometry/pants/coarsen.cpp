@@ -1,55 +1,48 @@
-// Collapses of half-edges v -> u: v and its two triangles go, its other neighbours are joined to u.
-//
-// After H. Hoppe, "Progressive meshes", 1996, and Dey et al., "Topology preserving edge
-// contraction", 1999 (the link condition), in passes over independent sets.
+// Coarser levels by half-edge collapses. After H. Hoppe, "Progressive meshes", 1996, and Dey et
+// al., "Topology preserving edge contraction", 1999 (the link condition), in passes over
+// independent sets.
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <utility>
+#include <numeric>
 
+#include "geometry/pants/collapsible.h"
 #include "geometry/pants/level.h"
 
 namespace leafcutter::geometry {
 namespace {
 
-// More neighbours than this in all and the merged vertex would be a hub.
-constexpr int kMostNeighbours = 16;
 // A closed line of fewer edges isn't simplicial.
 constexpr int kLeastLine = 3;
 // Passes that remove less than this part of the vertices are not worth repeating.
 constexpr double kSlowPass = 0.03;
 constexpr double kLastPass = 0.002;
 constexpr int kCheckEvery = 4096;
-// 2 x area over squared edges below which a triangle has no direction.
-constexpr double kFlat = 1e-9;
+// Square of the ratio of 2 x area to squared edges below which a triangle has no direction.
+constexpr double kFlat = 1e-18;
+// Positive floats in steps of a quarter of an octave: exponent and two bits after it.
+constexpr int kBitsBelowStep = 21;
+constexpr std::size_t kSteps = std::size_t{1} << (31 - kBitsBelowStep);
 
 // What a collapse may do to triangles. The surface may be one of flipped edges, folded here and
 // there in space, so the limits give way when they stop progress.
 struct Limits {
-    double least_cosine;  // Between a triangle's normal before and after.
-    double worst_shape;   // Sum of squared edges over 2 x area: 3.5 at best.
+    double least_cosine;  // Of the normal's turn, squared with its sign kept.
+    double worst_shape;   // Square of: sum of squared edges over 2 x area; 12 at best.
     double visited;       // Part of the vertices a pass looks at, shortest edges first.
 };
-constexpr std::array<Limits, 4> kLimits{{{0.3, 60.0, 0.6},
-                                         {0.1, 60.0, 0.6},
-                                         {-2.0, 60.0, 1.0},
+constexpr std::array<Limits, 4> kLimits{{{0.09, 100.0, 0.6},
+                                         {0.01, 3600.0, 0.6},
+                                         {-2.0, 3600.0, 1.0},
                                          {-2.0, std::numeric_limits<double>::infinity(), 1.0}}};
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
-
-struct Side {  // Half-edge 3t + k as in HalfEdges, both of its values in one place.
-    int from = -1;
-    int twin = -1;
-};
-
-struct RingEntry {
-    int neighbour = 0;
-    int half_edge = 0;  // Out of the middle, in the triangle before the next neighbour; -1: a gap.
-};
 
 class Collapser {
 public:
@@ -58,131 +51,99 @@ public:
 
 private:
     struct Choice {
-        std::size_t slot = 0;  // Of ring_.
+        std::size_t slot = 0;  // Of the ring.
         double shape = std::numeric_limits<double>::infinity();
     };
 
-    int next_from(int h) const { return sides_[at(HalfEdges::next(h))].from; }
-    int apex(int h) const { return sides_[at(HalfEdges::previous(h))].from; }
-    bool on_boundary(int v) const { return sides_[at(out_[at(v)])].twin < 0; }
-    bool on_line(int v) const { return line_[at(v)] >= 0 || on_boundary(v); }
+    bool on_line(int v) const { return line_[at(v)] >= 0 || mesh_.on_boundary(v); }
+    int neighbour(std::size_t slot) const { return mesh_.ring()[slot].neighbour; }
 
-    std::vector<std::pair<float, int>> shortest_first(double part) const;
+    std::vector<int> shortest_first(double part) const;
     int pass(const Limits& limits);
     void look(int v);
     bool may_go(int v) const;
     bool is_line_slot(int v, std::size_t slot) const;
     double worst_shape(std::size_t slot, const Limits& limits, double give_up) const;
-    bool keeps_topology(int v, std::size_t slot) const;
     bool keeps_lines(int v, std::size_t slot) const;
-    bool keeps_apex(int apex) const;
+    Choice best_collapse(int v, const Limits& limits) const;
     void collapse(int v, std::size_t slot);
-    int close_triangle(int h, int kept);
     Coarser compact();
 
-    const LinedSurface& fine_;
     const CoarsenOptions& options_;
     const Context& context_;
     const std::vector<Eigen::Vector3d>& positions_;
     const std::vector<int>& line_;
-    std::vector<Side> sides_;
-    std::vector<int> out_;     // A half-edge out of each vertex: a boundary one's own first.
-    std::vector<int> degree_;  // Neighbours; 0: gone.
-    std::vector<int> parent_;  // What a vertex was collapsed to, itself if it is there.
-    std::vector<int> line_size_;
-    std::vector<int> locked_;               // Number of the pass in which its neighbours changed.
-    std::vector<int> mark_;                 // Number of the look at which it was a neighbour.
-    std::vector<RingEntry> ring_;           // Of the vertex looked at, counter-clockwise.
-    std::vector<Eigen::Vector3d> normals_;  // Per slot of ring_: twice the area vector.
-    bool closed_ = true;                    // ring_ goes on from its end to its start.
+    CollapsibleMesh mesh_;
+    std::vector<int> parent_;     // What a vertex was collapsed to, itself if it is there.
+    std::vector<int> line_size_;  // Vertices of each line.
+    std::vector<int> locked_;     // Number of the pass in which its neighbours changed.
+    std::vector<Eigen::Vector3d> normals_;  // Of the ring's triangles, twice as long as their area.
     int pass_ = 0;
-    int looks_ = 0;
     std::size_t left_ = 0;  // Vertices.
 };
 
 Collapser::Collapser(const LinedSurface& fine,
                      const CoarsenOptions& options,
                      const Context& context)
-    : fine_(fine),
-      options_(options),
+    : options_(options),
       context_(context),
       positions_(fine.mesh.positions),
-      line_(fine.line_of_vertex) {
-    const std::size_t count = positions_.size();
-    const HalfEdges edges = build_half_edges(fine.mesh.triangles, static_cast<int>(count));
-    sides_.resize(edges.from.size());
-    out_.assign(count, -1);
-    degree_.assign(count, 0);
-    for (int h = 0; h < edges.size(); ++h) {
-        sides_[at(h)] = {edges.from_of(h), edges.twin_of(h)};
-        int& out = out_[at(edges.from_of(h))];
-        out = out < 0 || edges.twin_of(h) < 0 ? h : out;
-        ++degree_[at(edges.from_of(h))];
-        degree_[at(edges.to_of(h))] += edges.twin_of(h) < 0 ? 1 : 0;
-    }
-    for (std::size_t v = 0; v < count; ++v) {
-        parent_.push_back(static_cast<int>(v));
-        if (line_[v] >= 0) {
-            line_size_.resize(std::max(line_size_.size(), at(line_[v]) + 1), 0);
-            ++line_size_[at(line_[v])];
+      line_(fine.line_of_vertex),
+      mesh_(fine.mesh.triangles, static_cast<int>(positions_.size())),
+      parent_(positions_.size()),
+      locked_(positions_.size(), 0),
+      left_(positions_.size()) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+    for (const int line : line_) {
+        if (line >= 0) {
+            line_size_.resize(std::max(line_size_.size(), at(line) + 1), 0);
+            ++line_size_[at(line)];
         }
     }
-    locked_.assign(count, 0);
-    mark_.assign(count, 0);
-    left_ = count;
 }
 
-// Vertices by the mean square of their edges.
-std::vector<std::pair<float, int>> Collapser::shortest_first(double part) const {
+// Vertices by the mean square of their edges, rounded to steps of a quarter of an octave: those
+// alike come in the order of their numbers, which are often neighbours in memory. No step is torn.
+std::vector<int> Collapser::shortest_first(double part) const {
     std::vector<float> sum(positions_.size(), 0.0F);
     std::vector<int> edges(positions_.size(), 0);
-    for (std::size_t h = 0; h < sides_.size(); ++h) {
-        const int from = sides_[h].from;
+    for (int h = 0; h < mesh_.half_edges(); ++h) {
+        const int from = mesh_.from_of(h);
         if (from >= 0) {
-            const int to = next_from(static_cast<int>(h));
-            sum[at(from)] +=
-                static_cast<float>((positions_[at(to)] - positions_[at(from)]).squaredNorm());
+            sum[at(from)] += static_cast<float>(
+                (positions_[at(mesh_.to_of(h))] - positions_[at(from)]).squaredNorm());
             ++edges[at(from)];
         }
     }
-    std::vector<std::pair<float, int>> order;
-    order.reserve(left_);
+    std::vector<std::size_t> step(sum.size(), 0);
+    std::array<std::size_t, kSteps + 1> start{};
     for (std::size_t v = 0; v < sum.size(); ++v) {
         if (edges[v] > 0) {
-            order.emplace_back(sum[v] / static_cast<float>(edges[v]), static_cast<int>(v));
+            const float mean = sum[v] / static_cast<float>(edges[v]);
+            step[v] = std::bit_cast<std::uint32_t>(mean) >> kBitsBelowStep;
+            ++start[step[v] + 1];
         }
     }
-    const auto wanted = static_cast<std::size_t>(part * static_cast<double>(order.size()));
-    if (wanted < order.size()) {
-        std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(wanted),
-                         order.end());
-        order.resize(wanted);
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    const auto wanted = static_cast<std::size_t>(part * static_cast<double>(left_));
+    const std::size_t count = *std::lower_bound(start.begin(), start.end(), wanted);
+    std::vector<int> order(count);
+    for (std::size_t v = 0; v < sum.size(); ++v) {
+        if (edges[v] > 0 && start[step[v]] < count) {
+            order[start[step[v]]++] = static_cast<int>(v);
+        }
     }
-    std::sort(order.begin(), order.end());
     return order;
 }
 
 void Collapser::look(int v) {
-    ring_.clear();
-    ++looks_;
-    const int start = out_[at(v)];
-    int h = start;
-    closed_ = true;
-    do {
-        ring_.push_back({next_from(h), h});
-        const int last = HalfEdges::previous(h);
-        h = sides_[at(last)].twin;
-        if (h < 0) {
-            ring_.push_back({sides_[at(last)].from, -1});
-            closed_ = false;
-        }
-    } while (h >= 0 && h != start);
+    mesh_.look(v);
+    const std::vector<CollapsibleEntry>& ring = mesh_.ring();
     normals_.clear();
-    for (std::size_t k = 0; k < ring_.size(); ++k) {
-        mark_[at(ring_[k].neighbour)] = looks_;
-        if (ring_[k].half_edge >= 0) {
-            const Eigen::Vector3d& left = positions_[at(ring_[k].neighbour)];
-            const Eigen::Vector3d& right = positions_[at(ring_[(k + 1) % ring_.size()].neighbour)];
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        if (ring[k].half_edge >= 0) {
+            const Eigen::Vector3d& left = positions_[at(ring[k].neighbour)];
+            const Eigen::Vector3d& right = positions_[at(neighbour((k + 1) % ring.size()))];
             normals_.emplace_back((left - positions_[at(v)]).cross(right - positions_[at(v)]));
         }
     }
@@ -198,87 +159,49 @@ bool Collapser::may_go(int v) const {
         return false;
     }
     int along = 0;
-    for (std::size_t k = 0; k < ring_.size(); ++k) {
+    for (std::size_t k = 0; k < mesh_.ring().size(); ++k) {
         along += is_line_slot(v, k) ? 1 : 0;
     }
     return along == 2;
 }
 
 bool Collapser::is_line_slot(int v, std::size_t slot) const {
-    if (line_[at(v)] < 0 || line_[at(ring_[slot].neighbour)] != line_[at(v)]) {
+    if (line_[at(v)] < 0 || line_[at(neighbour(slot))] != line_[at(v)]) {
         return false;
     }
-    return closed_ || slot == 0 || slot + 1 == ring_.size();
+    return mesh_.is_closed() || slot == 0 || slot + 1 == mesh_.ring().size();
 }
 
-// The worst triangle after the collapse to ring slot `slot`; infinity if one is against the limits.
+// Shape, squared, of the worst triangle after the collapse to ring slot `slot`; infinity if one is
+// against the limits or not below `give_up`.
 double Collapser::worst_shape(std::size_t slot, const Limits& limits, double give_up) const {
     constexpr double kNo = std::numeric_limits<double>::infinity();
-    const std::size_t count = ring_.size();
-    const Eigen::Vector3d& u = positions_[at(ring_[slot].neighbour)];
+    const std::size_t count = mesh_.ring().size();
+    const Eigen::Vector3d& u = positions_[at(neighbour(slot))];
     double worst = 0.0;
     for (std::size_t k = 0; k < normals_.size(); ++k) {
         const std::size_t after = k + 1 == count ? 0 : k + 1;
         if (k == slot || after == slot) {
             continue;
         }
-        const Eigen::Vector3d left = positions_[at(ring_[k].neighbour)] - u;
-        const Eigen::Vector3d right = positions_[at(ring_[after].neighbour)] - u;
+        const Eigen::Vector3d left = positions_[at(neighbour(k))] - u;
+        const Eigen::Vector3d right = positions_[at(neighbour(after))] - u;
         const Eigen::Vector3d normal = left.cross(right);
-        const double size = normal.norm();
+        const double size = normal.squaredNorm();
         const double squares =
             left.squaredNorm() + right.squaredNorm() + (right - left).squaredNorm();
-        worst = std::max(worst, squares / std::max(size, kFlat * squares));
+        const double flat = kFlat * squares * squares;
+        worst = std::max(worst, squares * squares / std::max(size, flat));
         if (worst > limits.worst_shape || worst >= give_up) {
             return kNo;
         }
-        const double old_size = normals_[k].norm();
-        if (old_size > kFlat * squares &&
-            normal.dot(normals_[k]) < limits.least_cosine * size * old_size) {
+        const double old_size = normals_[k].squaredNorm();
+        const double along = normal.dot(normals_[k]);
+        if (old_size > flat && along * std::abs(along) < limits.least_cosine * size * old_size) {
             return kNo;
         }
     }
     return worst;
-}
-
-// A vertex that loses a neighbour keeps a ring.
-bool Collapser::keeps_apex(int apex) const {
-    return degree_[at(apex)] >= (on_boundary(apex) ? 3 : 4);
-}
-
-// The link condition: v and u share the two corners facing their edge (one on the boundary) and
-// nothing else.
-bool Collapser::keeps_topology(int v, std::size_t slot) const {
-    const int u = ring_[slot].neighbour;
-    if (degree_[at(u)] + degree_[at(v)] > kMostNeighbours) {
-        return false;
-    }
-    const std::size_t count = ring_.size();
-    int facing = 0;
-    if (closed_ || slot + 1 < count) {
-        ++facing;
-        if (!keeps_apex(ring_[(slot + 1) % count].neighbour)) {
-            return false;
-        }
-    }
-    if (closed_ || slot > 0) {
-        ++facing;
-        if (!keeps_apex(ring_[(slot + count - 1) % count].neighbour)) {
-            return false;
-        }
-    }
-    int shared = 0;
-    const int start = out_[at(u)];
-    int h = start;
-    do {
-        shared += mark_[at(next_from(h))] == looks_ ? 1 : 0;
-        const int last = HalfEdges::previous(h);
-        h = sides_[at(last)].twin;
-        if (h < 0) {
-            shared += mark_[at(sides_[at(last)].from)] == looks_ ? 1 : 0;
-        }
-    } while (h >= 0 && h != start);
-    return shared == facing;
 }
 
 // No new edge joins two vertices of lines, but for the one that replaces two edges of v's line.
@@ -287,19 +210,18 @@ bool Collapser::keeps_lines(int v, std::size_t slot) const {
     if (along && !is_line_slot(v, slot)) {
         return false;
     }
-    const int u = ring_[slot].neighbour;
-    if (!on_line(u)) {
+    if (!on_line(neighbour(slot))) {
         return true;
     }
-    const std::size_t count = ring_.size();
+    const std::size_t count = mesh_.ring().size();
     for (std::size_t k = 0; k < count; ++k) {
         const std::size_t apart = (k + count - slot) % count;
         const bool facing = apart <= 1 || apart + 1 == count;
         const bool other_line_edge = along && is_line_slot(v, k);
-        if (k == slot || !on_line(ring_[k].neighbour)) {
+        if (k == slot || !on_line(neighbour(k))) {
             continue;
         }
-        if (closed_ && other_line_edge && facing) {
+        if (mesh_.is_closed() && other_line_edge && facing) {
             return false;  // u is already joined to it, beside the line.
         }
         if (!other_line_edge && !facing) {
@@ -309,60 +231,26 @@ bool Collapser::keeps_lines(int v, std::size_t slot) const {
     return true;
 }
 
-// Joins the two outer sides of a triangle that goes; `h` is its side between the two vertices that
-// become one. Returns the outer side that starts at the kept vertex, or -1.
-int Collapser::close_triangle(int h, int kept) {
-    const std::array<int, 2> inner{HalfEdges::next(h), HalfEdges::previous(h)};
-    const std::array<int, 2> outer{sides_[at(inner[0])].twin, sides_[at(inner[1])].twin};
-    const int tip = sides_[at(inner[1])].from;
-    for (std::size_t k = 0; k < 2; ++k) {
-        if (outer[k] >= 0) {
-            sides_[at(outer[k])].twin = outer[1 - k];
+Collapser::Choice Collapser::best_collapse(int v, const Limits& limits) const {
+    Choice best;
+    for (std::size_t slot = 0; slot < mesh_.ring().size(); ++slot) {
+        const double shape = worst_shape(slot, limits, best.shape);
+        if (shape < best.shape && keeps_lines(v, slot) && mesh_.may_collapse(slot)) {
+            best = {slot, shape};
         }
     }
-    if (out_[at(tip)] == inner[1]) {
-        out_[at(tip)] = outer[0];
-    }
-    --degree_[at(tip)];
-    for (const int side : {h, inner[0], inner[1]}) {
-        sides_[at(side)].from = -1;
-    }
-    return outer[1] >= 0 && sides_[at(outer[1])].from == kept ? outer[1] : -1;
+    return best;
 }
 
 void Collapser::collapse(int v, std::size_t slot) {
-    const int u = ring_[slot].neighbour;
-    std::array<int, 2> sides{ring_[slot].half_edge, -1};  // v -> u and u -> v.
-    if (closed_ || slot > 0) {
-        const RingEntry& before = ring_[(slot + ring_.size() - 1) % ring_.size()];
-        sides[1] = HalfEdges::previous(before.half_edge);
-    }
-    for (const RingEntry& entry : ring_) {
+    for (const CollapsibleEntry& entry : mesh_.ring()) {
         locked_[at(entry.neighbour)] = pass_;
-        if (entry.half_edge >= 0) {
-            sides_[at(entry.half_edge)].from = u;
-        }
     }
-    std::array<int, 4> out{-1, -1, out_[at(u)], out_[at(v)]};
-    degree_[at(u)] += degree_[at(v)] - 2;
-    for (std::size_t k = 0; k < 2; ++k) {
-        if (sides[k] >= 0) {
-            out[k] = close_triangle(sides[k], u);
-            --degree_[at(u)];
-        }
-    }
-    int kept = -1;
-    for (const int h : out) {
-        if (h >= 0 && sides_[at(h)].from == u && (kept < 0 || sides_[at(h)].twin < 0)) {
-            kept = h;
-        }
-    }
-    out_[at(u)] = kept;
-    degree_[at(v)] = 0;
-    parent_[at(v)] = u;
+    parent_[at(v)] = neighbour(slot);
     if (line_[at(v)] >= 0) {
         --line_size_[at(line_[at(v)])];
     }
+    mesh_.collapse(v, slot);
     --left_;
 }
 
@@ -371,7 +259,7 @@ int Collapser::pass(const Limits& limits) {
     ++pass_;
     int gone = 0;
     int visits = 0;
-    for (const auto& [length, v] : shortest_first(limits.visited)) {
+    for (const int v : shortest_first(limits.visited)) {
         if (++visits % kCheckEvery == 0) {
             context_.check();
         }
@@ -385,13 +273,7 @@ int Collapser::pass(const Limits& limits) {
         if (!may_go(v)) {
             continue;
         }
-        Choice best;
-        for (std::size_t slot = 0; slot < ring_.size(); ++slot) {
-            const double shape = worst_shape(slot, limits, best.shape);
-            if (shape < best.shape && keeps_lines(v, slot) && keeps_topology(v, slot)) {
-                best = {slot, shape};
-            }
-        }
+        const Choice best = best_collapse(v, limits);
         if (std::isfinite(best.shape)) {
             collapse(v, best.slot);
             ++gone;
@@ -411,11 +293,11 @@ Coarser Collapser::compact() {
         }
     }
     out.surface.mesh.triangles.reserve(2 * left_);
-    for (std::size_t h = 0; h < sides_.size(); h += 3) {
-        if (sides_[h].from >= 0) {
-            out.surface.mesh.triangles.push_back({name[at(sides_[h].from)],
-                                                  name[at(sides_[h + 1].from)],
-                                                  name[at(sides_[h + 2].from)]});
+    for (int h = 0; h < mesh_.half_edges(); h += 3) {
+        if (mesh_.from_of(h) >= 0) {
+            out.surface.mesh.triangles.push_back({name[at(mesh_.from_of(h))],
+                                                  name[at(mesh_.from_of(h + 1))],
+                                                  name[at(mesh_.from_of(h + 2))]});
         }
     }
     out.representative.reserve(positions_.size());

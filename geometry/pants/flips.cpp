@@ -87,7 +87,9 @@ Flipper::Flipper(const LinedSurface& surface, const VertexRings& rings)
         const bool boundary = mesh_.twin_of(edge.half_edge) < 0;
         for (const int v : {edge.from, edge.to}) {
             ++degree_[at(v)];
-            on_boundary[at(v)] = boundary ? 1 : on_boundary[at(v)];
+            if (boundary) {
+                on_boundary[at(v)] = 1;
+            }
         }
     }
     const std::vector<int>& line = surface.line_of_vertex;

@@ -52,15 +52,15 @@ struct FlippedSurface {
     // Per triangle (three consecutive half-edges) of half_edges.
     std::vector<double> area;
     std::vector<int> flips;  // Edge ids in the order they were flipped.
-    int forced_weights = 0;  // Edges whose cotangent weight was not positive.
+    int forced_weights = 0;  // Inner edges with a negative weight, whose flip was refused.
 };
 
 FlippedSurface flip_to_delaunay(const LinedSurface& surface, const VertexRings& rings);
 
 // Carries the words of a converged map back from the flipped surface to the surface it was made
 // from: `words` are per edge id of `flipped` on entry, of `rings` afterwards, each from that ring's
-// MeshEdge::from to its to. Vertices exactly at a node are first moved a hair into their own edge.
-// Throws Error(SelfCheck, "broken-tree") where words round a triangle don't fit together.
+// MeshEdge::from to its to. Places stay. Throws Error(SelfCheck, "broken-tree") where words round a
+// triangle don't fit together.
 void undo_flips(GraphMap& map,
                 const FlippedSurface& flipped,
                 const LinedSurface& surface,

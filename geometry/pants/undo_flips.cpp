@@ -32,14 +32,12 @@ int edges_of(const Word& word) {
     return word.empty() ? 1 : static_cast<int>(word.size());
 }
 
-Word without_single(Word word) {
-    return word.size() == 1 ? Word{} : word;
-}
-
+// What is left of a word without its first `from` darts.
 Word tail(const Word& word, int from) {
-    return without_single(
-        {word.begin() + std::min<std::ptrdiff_t>(from, static_cast<std::ptrdiff_t>(word.size())),
-         word.end()});
+    if (static_cast<int>(word.size()) < from + 2) {
+        return {};
+    }
+    return {word.begin() + from, word.end()};
 }
 
 // With how many edges the paths from one corner to two others start alike, its own included.
@@ -203,8 +201,8 @@ void undo_flips(GraphMap& map,
                 const LinedSurface& /*surface*/,
                 const VertexRings& rings) {
     Undoing undoing(map, flipped.rings);
-    for (auto edge = flipped.flips.rbegin(); edge != flipped.flips.rend(); ++edge) {
-        undoing.undo(*edge);
+    for (std::size_t k = flipped.flips.size(); k > 0; --k) {
+        undoing.undo(flipped.flips[k - 1]);
     }
     undoing.turn_to(rings);
 }
