@@ -189,7 +189,7 @@ def draw(package, arguments):
             if arguments.family in ("both", leaf["family"]):
                 canvas.line(leaf["points"], leaf["closed"], 0.5 * FINER, BLUE if leaf["family"] == "weft" else RED)
         for curve in leaves.get("critical_graph", []):
-            canvas.line(curve, False, 1.25 * FINER, BLACK)
+            canvas.line(curve["points"], False, 1.25 * FINER, BLACK)
         for singular in leaves.get("singularities", []):
             canvas.point(singular["position"], 3.0 * FINER, YELLOW)
         pictures.append(canvas.picture())
