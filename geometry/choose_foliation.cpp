@@ -1,8 +1,10 @@
 #include "geometry/choose_foliation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <exception>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,8 +23,7 @@ namespace {
 // less even than other foliations.
 constexpr double kPillowcaseVariation = 2.0;
 constexpr double kPillowcaseLargest = 9.0;
-constexpr double kVariation = 3.0;
-// Holes must make the largest cells, or the variation, smaller by this factor.
+// Holes must make the logarithm of the largest cells smaller by this factor.
 constexpr double kWorthHoles = 0.6;
 // Parts of the progress.
 constexpr double kWhole = 0.45;
@@ -71,14 +72,11 @@ bool is_even(FoliationMode mode, const CellSpread& spread) {
     if (mode == FoliationMode::SpherePillowcase) {
         return spread.variation <= kPillowcaseVariation && spread.largest <= kPillowcaseLargest;
     }
-    return !has_large_cells(spread) && spread.variation <= kVariation;
+    return !has_large_cells(spread);
 }
 
 bool is_worth_holes(const CellSpread& without, const CellSpread& with) {
-    const bool smaller = with.largest <= kWorthHoles * without.largest;
-    const bool evener =
-        with.variation <= kWorthHoles * without.variation && with.largest <= without.largest;
-    return smaller || (without.variation > kVariation && evener);
+    return std::log(with.largest) <= kWorthHoles * std::log(without.largest);
 }
 
 std::string percent_of(double area, const SurfacePart& part) {
@@ -121,7 +119,7 @@ double removed_area(const Foliation& foliation, const SurfacePart& part) {
     return std::max(area, 0.0);
 }
 
-// Puts the chosen foliation's own figures into the list.
+// Puts the chosen foliation's own figures into the list, and what its mode has tried at the end.
 void set_alternatives(Foliation& foliation,
                       const SurfacePart& part,
                       std::vector<Alternative> alternatives,
@@ -129,6 +127,13 @@ void set_alternatives(Foliation& foliation,
     alternatives[chosen].spread = foliation.spread;
     alternatives[chosen].removed_area = removed_area(foliation, part);
     alternatives[chosen].chosen = true;
+    const std::string prefix = alternatives[chosen].name + ": ";
+    for (Alternative& own : foliation.alternatives) {
+        if (!own.chosen) {
+            own.name = prefix + own.name;
+            alternatives.push_back(std::move(own));
+        }
+    }
     foliation.alternatives = std::move(alternatives);
 }
 
@@ -199,7 +204,13 @@ Foliation choose(const SurfacePart& part, const FoliationOptions& options, const
         return std::move(*whole.foliation);
     }
     HoleSearch search(part, options, context);
-    const std::vector<Trial> trials = search.run(is_sphere ? 2 : 1, FoliationMode::Auto, context);
+    std::vector<Trial> trials;
+    if (!is_good) {
+        trials = search.run(is_sphere ? 2 : 1, FoliationMode::Auto, context);
+    } else if (std::optional<Trial> trial = search.attempt(
+                   std::max<std::size_t>(2, search.long_limbs()), FoliationMode::Auto, context)) {
+        trials.push_back(std::move(*trial));
+    }
     context.report("foliation", kTried);
     if (!is_good) {
         if (std::optional<Foliation> opened =
@@ -213,6 +224,9 @@ Foliation choose(const SurfacePart& part, const FoliationOptions& options, const
     }
     std::vector<Alternative> alternatives{{name_of(natural), {}, 0.0, false}};
     std::transform(trials.begin(), trials.end(), std::back_inserter(alternatives), as_alternative);
+    if (const std::optional<Trial> polar = search.attempt_polar(context)) {
+        alternatives.push_back(as_alternative(*polar));
+    }
     set_alternatives(*whole.foliation, part, std::move(alternatives), 0);
     return std::move(*whole.foliation);
 }

@@ -101,6 +101,28 @@ std::optional<Trial> HoleSearch::attempt(std::size_t holes,
     }
 }
 
+std::optional<Trial> HoleSearch::attempt_polar(const Context& context) const {
+    if (coarse_.euler != 2) {
+        return std::nullopt;
+    }
+    Context quiet = context;
+    quiet.progress = nullptr;
+    try {
+        const Foliation polar = foliate_part(coarse_, FoliationMode::SpherePolar, options_, quiet);
+        Trial trial;
+        trial.mode = FoliationMode::SpherePolar;
+        trial.name = name_of(trial.mode);
+        trial.spread = polar.spread;
+        trial.removed_area = surface_area(coarse_.mesh);
+        for (const Cylinder& cylinder : polar.cylinders) {
+            trial.removed_area -= surface_area(cylinder.mesh);
+        }
+        return trial;
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
 std::vector<Trial> HoleSearch::run(std::size_t least, FoliationMode mode, const Context& context) {
     std::vector<Trial> trials;
     const std::size_t first = std::max(least, long_limbs_);

@@ -28,6 +28,8 @@ public:
     // Keeps `part` and `options` by reference.
     HoleSearch(const SurfacePart& part, const FoliationOptions& options, const Context& context);
 
+    std::size_t long_limbs() const { return long_limbs_; }
+
     // Holes at the tips of all long limbs, at least `least`; then at more tips, as long as cells
     // are far too large somewhere. Mode Auto is that of the surface with its holes. Best first;
     // those that fail are left out.
@@ -35,6 +37,9 @@ public:
 
     // The same with just `holes`.
     std::optional<Trial> attempt(std::size_t holes, FoliationMode mode, const Context& context);
+
+    // Between two poles; nothing if that fails or the surface is no closed sphere.
+    std::optional<Trial> attempt_polar(const Context& context) const;
 
     // The trial at full resolution.
     Foliation finish(const Trial& trial, const Context& context) const;

@@ -61,8 +61,11 @@ std::vector<Foliation> foliate_each(const std::vector<SurfacePart>& parts,
             if (parts.size() == 1) {
                 throw;
             }
-            throw Error(error.kind(), error.code(),
-                        fmt::format("part {} of {}: {}", k + 1, parts.size(), error.what()));
+            throw Error(
+                error.kind(), error.code(),
+                fmt::format("part {} of {}: {} (foliation.components \"largest\" weaves the "
+                            "largest part alone)",
+                            k + 1, parts.size(), error.what()));
         }
         done += share;
     }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <unordered_map>
 
 #include <Eigen/Geometry>
 
@@ -22,6 +23,7 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 // with a round cap that happens at kReach radii.
 constexpr double kRoundsLimb = 0.6;
 constexpr double kReach = 2.6;
+constexpr int kRadiusSteps = 48;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -144,6 +146,48 @@ std::vector<LimbTip> persistent_maxima(const TriangleMesh& mesh,
     return tips;
 }
 
+// A triangle that lies between two distances from somewhere.
+struct Band {
+    double low = 0.0;
+    double high = 0.0;
+    double area = 0.0;
+
+    double area_within(double radius) const {
+        return radius >= high ? area : radius <= low ? 0.0 : area * (radius - low) / (high - low);
+    }
+};
+
+// Of all triangles whose corners' distances are known.
+std::vector<Band> bands_of(const TriangleMesh& mesh,
+                           const SurfaceDistance& rings,
+                           const std::vector<SurfaceDistance::Reached>& ball) {
+    std::unordered_map<int, double> distance;
+    for (const SurfaceDistance::Reached& reached : ball) {
+        distance.emplace(reached.vertex, reached.distance);
+    }
+    std::vector<Band> bands;
+    for (const auto& [vertex, unused] : ball) {
+        for (const int t : rings.triangles_of(vertex)) {
+            const auto& corners = mesh.triangles[at(t)];
+            std::array<double, 3> d{};
+            bool is_known = true;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto found = distance.find(corners[k]);
+                is_known = is_known && found != distance.end();
+                d[k] = is_known ? found->second : 0.0;
+            }
+            if (is_known && corners[0] == vertex) {  // Once for each triangle.
+                const Eigen::Vector3d& a = mesh.positions[at(corners[0])];
+                const Eigen::Vector3d ab = mesh.positions[at(corners[1])] - a;
+                const Eigen::Vector3d ac = mesh.positions[at(corners[2])] - a;
+                bands.push_back({*std::min_element(d.begin(), d.end()),
+                                 *std::max_element(d.begin(), d.end()), 0.5 * ab.cross(ac).norm()});
+            }
+        }
+    }
+    return bands;
+}
+
 }  // namespace
 
 std::vector<LimbTip> find_limb_tips(const TriangleMesh& mesh,
@@ -196,28 +240,23 @@ std::vector<int> farthest_vertices(const TriangleMesh& mesh,
 }
 
 double limb_radius(const TriangleMesh& mesh, int vertex, double most) {
+    const double reach = kReach * most;
     SurfaceDistance distances(mesh);
-    double area = 0.0;
-    double rounds = kReach * most;
-    distances.from(std::span(&vertex, 1), [&](const SurfaceDistance::Reached& reached) {
-        const double flat = std::numbers::pi * reached.distance * reached.distance;
-        if (rounds < kReach * most || reached.distance > kReach * most) {
-            return false;
+    const std::vector<SurfaceDistance::Reached> ball = distances.from(
+        std::span(&vertex, 1),
+        [&](const SurfaceDistance::Reached& reached) { return reached.distance < reach; });
+    const std::vector<Band> bands = bands_of(mesh, distances, ball);
+    for (int k = kRadiusSteps / 8; k <= kRadiusSteps; ++k) {
+        const double radius = reach * k / kRadiusSteps;
+        double area = 0.0;
+        for (const Band& band : bands) {
+            area += band.area_within(radius);
         }
-        if (reached.distance > kReach * most / 8.0 && area < kRoundsLimb * flat) {
-            rounds = reached.distance;
-            return false;
+        if (area < kRoundsLimb * std::numbers::pi * radius * radius) {
+            return radius / kReach;
         }
-        for (const int t : distances.triangles_of(reached.vertex)) {
-            const auto& corners = mesh.triangles[at(t)];
-            const Eigen::Vector3d& a = mesh.positions[at(corners[0])];
-            const Eigen::Vector3d ab = mesh.positions[at(corners[1])] - a;
-            const Eigen::Vector3d ac = mesh.positions[at(corners[2])] - a;
-            area += ab.cross(ac).norm() / 6.0;
-        }
-        return true;
-    });
-    return rounds / kReach;
+    }
+    return most;
 }
 
 }  // namespace leafcutter::geometry

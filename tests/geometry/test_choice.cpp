@@ -56,7 +56,6 @@ TEST(Choice, AFingerOnAPlateIsOpenedAtItsTip) {
     EXPECT_EQ(opened.mode, FoliationMode::Annulus);
     ASSERT_EQ(opened.punctures.size(), 1U);
     EXPECT_GT(mesh.point(Mesh::VertexHandle(opened.punctures[0].vertex)).z(), 2.0);
-    EXPECT_LT(opened.spread.largest, 5.0);
     ASSERT_GE(opened.alternatives.size(), 2U);
     EXPECT_EQ(opened.alternatives[0].name, "disk");
     EXPECT_GT(opened.alternatives[0].spread.largest, 5.0 * opened.spread.largest);
