@@ -70,7 +70,10 @@ SolvedChart solve_on_cover(const ChartSurface& surface, const Points& points, Co
     const std::vector<WeightedEdge> edges = cotangent_edges(delaunay);
     const std::vector<Jump> jump = edge_jumps(edges, [&](int h) { return delaunay.jump[at(h)]; });
     const HarmonicForms forms = solve_odd_forms(chart.cover, chart.cochains, edges, jump);
-    chart.frame = lay_out_torus(solved, forms, shortest_classes(forms));
+    const auto [rising, round] = shortest_classes(forms);
+    chart.frame = lay_out_torus(solved, forms, {rising, round});
+    solved.flux_mismatch = periodic_flux_variation(
+        edges, rising.x() * forms.values[0] + rising.y() * forms.values[1], jumps_of(rising, jump));
     return solved;
 }
 
@@ -186,6 +189,7 @@ Foliation finish_pillow(SolvedChart on_cover,
     // Half the cover, twice as large: a ring of the torus on half its height.
     solved.upper = 2.0 * on_cover.upper;
     solved.lower = 2.0 * on_cover.lower;
+    solved.flux_mismatch = on_cover.flux_mismatch;
     Foliation finished = finish_foliation(std::move(solved), rails, context);
     finished.singularities = std::move(result.singularities);
     finished.critical_graph = std::move(result.critical_graph);

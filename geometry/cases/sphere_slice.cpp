@@ -165,16 +165,22 @@ private:
         return (band & 1) != 0 ? Eigen::Vector2d(-moved) : moved;
     }
 
-    // The vertex where the half-edge crosses the arc `number` of `count` on its way, as seen from
-    // before (after = 0) or after it.
-    int crossing_vertex(
-        int half_edge, int number, int count, int after, const Eigen::Vector3d& position) {
-        int edge = half_edge;
-        int segment = number + after;
-        int end = 1 - after;
-        if (!surface_.edges.is_first(half_edge)) {
-            edge = surface_.edges.twin_of(half_edge);
-            segment = count - segment;
+    // Where a half-edge crosses the arc `number` of `count` on its way, as a piece before or after
+    // it sees it.
+    struct Crossing {
+        int half_edge = 0;
+        int number = 0;
+        int count = 0;
+        bool after = false;
+    };
+
+    int crossing_vertex(const Crossing& crossing, const Eigen::Vector3d& position) {
+        int edge = crossing.half_edge;
+        int segment = crossing.number + (crossing.after ? 1 : 0);
+        int end = crossing.after ? 0 : 1;
+        if (!surface_.edges.is_first(edge)) {
+            edge = surface_.edges.twin_of(edge);
+            segment = crossing.count - segment;
             end = 1 - end;
         }
         // Segments of one edge are few: a chart of that many turns would not be solvable.
@@ -212,9 +218,9 @@ private:
             const Eigen::Vector3d& from = surface_.mesh.positions[at(a.vertex)];
             const Eigen::Vector3d& to = surface_.mesh.positions[at(b.vertex)];
             // Upwards the band's lower arc is where the piece begins.
-            const int after = (arc == band) == rising ? 1 : 0;
-            piece.push_back({crossing_vertex(half_edge, i, count, after, from + part * (to - from)),
-                             folded(place, band)});
+            const Crossing crossing{half_edge, i, count, (arc == band) == rising};
+            piece.push_back(
+                {crossing_vertex(crossing, from + part * (to - from)), folded(place, band)});
         }
     }
 

@@ -18,8 +18,15 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-HarmonicForms solve_forms(const ChartMap& map) {
+struct TorusForms {
     HarmonicForms forms;
+    std::vector<WeightedEdge> edges;  // Of the intrinsic Delaunay triangulation.
+    std::vector<Jump> jump;           // Per edge.
+};
+
+TorusForms solve_forms(const ChartMap& map) {
+    TorusForms out;
+    HarmonicForms& forms = out.forms;
     std::vector<Cochain> basis =
         cohomology_basis(map.edges, static_cast<int>(map.mesh.positions.size()));
     if (basis.size() != 2) {
@@ -33,43 +40,45 @@ HarmonicForms solve_forms(const ChartMap& map) {
         jump[h] = {forms.jump[0][h], forms.jump[1][h]};
     }
     const IntrinsicTriangulation delaunay = intrinsic_delaunay(map.mesh, map.edges, jump);
-    const std::vector<WeightedEdge> edges = cotangent_edges(delaunay);
-
+    out.edges = cotangent_edges(delaunay);
+    for (const WeightedEdge& edge : out.edges) {
+        out.jump.push_back(delaunay.jump[at(edge.half_edge)]);
+    }
     std::vector<char> held(map.gf.size(), 0);
     held.front() = 1;
-    const HarmonicSolver solver(edges, held);
-    std::array<std::vector<double>, 2> rise;
+    const HarmonicSolver solver(out.edges, held);
+    const std::array<std::vector<double>, 2> edge_jump{jumps_of({1, 0}, out.jump),
+                                                       jumps_of({0, 1}, out.jump)};
     for (std::size_t k = 0; k < 2; ++k) {
-        std::vector<double> edge_jump;
-        edge_jump.reserve(edges.size());
-        for (const WeightedEdge& edge : edges) {
-            edge_jump.push_back(delaunay.jump[at(edge.half_edge)][k]);
-        }
-        forms.values[k] =
-            solver.solve(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held.size())), edge_jump);
-        for (std::size_t e = 0; e < edges.size(); ++e) {
-            rise[k].push_back(forms.values[k][edges[e].to] - forms.values[k][edges[e].from] +
-                              edge_jump[e]);
-        }
+        forms.values[k] = solver.solve(
+            Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held.size())), edge_jump[k]);
     }
     forms.gram.setZero();
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-        const Eigen::Vector2d both(rise[0][e], rise[1][e]);
-        forms.gram += edges[e].weight * both * both.transpose();
+    for (std::size_t e = 0; e < out.edges.size(); ++e) {
+        const WeightedEdge& edge = out.edges[e];
+        const auto rise = [&](std::size_t k) {
+            return forms.values[k][edge.to] - forms.values[k][edge.from] + edge_jump[k][e];
+        };
+        const Eigen::Vector2d both(rise(0), rise(1));
+        forms.gram += edge.weight * both * both.transpose();
     }
-    return forms;
+    return out;
 }
 
 SolvedChart solve_torus(const ChartSurface& surface, TorusRings rings) {
     SolvedChart solved;
     solved.map = start_chart(surface);
-    const HarmonicForms forms = solve_forms(solved.map);
+    const TorusForms solution = solve_forms(solved.map);
+    const HarmonicForms& forms = solution.forms;
     // The form of least energy rises along the long generator: its level sets are the short rings.
     auto [rising, round] = shortest_classes(forms);
     if (rings == TorusRings::Long) {
         std::swap(rising, round);
     }
     lay_out_torus(solved, forms, {rising, round});
+    solved.flux_mismatch = periodic_flux_variation(
+        solution.edges, rising.x() * forms.values[0] + rising.y() * forms.values[1],
+        jumps_of(rising, solution.jump));
     return solved;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace leafcutter::geometry {
 namespace {
@@ -18,6 +19,51 @@ void set_coordinates(ChartMap& map, const HarmonicForms& forms, const Eigen::Mat
 }
 
 }  // namespace
+
+std::vector<double> jumps_of(const FormClass& combination, std::span<const Jump> jump) {
+    std::vector<double> out;
+    out.reserve(jump.size());
+    for (const Jump& pair : jump) {
+        out.push_back(combination.x() * pair[0] + combination.y() * pair[1]);
+    }
+    return out;
+}
+
+double periodic_flux_variation(std::span<const WeightedEdge> edges,
+                               const Eigen::VectorXd& values,
+                               std::span<const double> jump) {
+    // Every edge is cut where it passes a whole number; each vertex keeps one value in [0, 1).
+    const Eigen::VectorXd home = values.array() - values.array().floor();
+    std::vector<WeightedEdge> cut;
+    std::vector<double> ends;
+    const auto add = [&](double from, double to, double flux) {
+        if (from != to) {
+            const int vertex = static_cast<int>(ends.size());
+            cut.push_back({vertex, vertex + 1, flux / std::abs(to - from), 0});
+            ends.push_back(from);
+            ends.push_back(to);
+        }
+    };
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const WeightedEdge& edge = edges[e];
+        const double rise = values[edge.to] - values[edge.from] + jump[e];
+        const double flux = edge.weight * std::abs(rise);
+        const double low = rise > 0.0 ? home[edge.from] : home[edge.to];
+        const double high = rise > 0.0 ? home[edge.to] : home[edge.from];
+        const auto passed = static_cast<int>(std::lround(std::abs(rise) - (high - low)));
+        if (passed == 0) {
+            add(low, high, flux);
+            continue;
+        }
+        add(low, 1.0, flux);
+        for (int turn = 1; turn < passed; ++turn) {
+            add(0.0, 1.0, flux);
+        }
+        add(0.0, high, flux);
+    }
+    return flux_variation(cut, Eigen::Map<const Eigen::VectorXd>(
+                                   ends.data(), static_cast<Eigen::Index>(ends.size())));
+}
 
 std::pair<FormClass, FormClass> shortest_classes(const HarmonicForms& forms) {
     FormClass a(1, 0);

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "geometry/harmonic/chart_map.h"
 #include "geometry/harmonic/resolve.h"
+#include "geometry/laplacian.h"
 #include "geometry/loops/tree_cotree.h"
 
 namespace leafcutter::geometry {
@@ -27,6 +30,9 @@ struct HarmonicForms {
     }
 };
 
+// What a combination rises more along each edge, from the basis cochains there.
+std::vector<double> jumps_of(const FormClass& combination, std::span<const Jump> jump);
+
 // Gauss reduction: the shortest class first, then the shortest independent of it, with
 // 2 |<a, b>| <= <a, a> <= <b, b>.
 std::pair<FormClass, FormClass> shortest_classes(const HarmonicForms& forms);
@@ -37,5 +43,11 @@ std::pair<FormClass, FormClass> shortest_classes(const HarmonicForms& forms);
 Eigen::Matrix2d lay_out_torus(SolvedChart& solved,
                               const HarmonicForms& forms,
                               const std::pair<FormClass, FormClass>& rising_and_round);
+
+// Largest relative difference of the fluxes through two leaves of a function that is harmonic but
+// for whole numbers: its values per vertex, and what it rises more along each edge.
+double periodic_flux_variation(std::span<const WeightedEdge> edges,
+                               const Eigen::VectorXd& values,
+                               std::span<const double> jump);
 
 }  // namespace leafcutter::geometry

@@ -136,6 +136,7 @@ void expect_pillowcase(const TriangleMesh& mesh, const Foliation& foliation) {
         EXPECT_EQ(foliation.critical_graph[k].back(), foliation.singularities[2 * k + 1].position);
     }
     EXPECT_GT(foliation.spread.variation, 0.0);
+    EXPECT_LT(chart.flux_mismatch, 1e-8);
 }
 
 // The two sides of a slit meet at mirrored places: (g, 0) and (-g, 0), (g, 1) and (2 shear - g, 1).
