@@ -166,12 +166,18 @@ private:
             "each piece is glued under the start of the next.</li>\n"
             "<li>Fold lightly along scored lines.</li>\n";
         for (std::size_t i = 0; i < job_.quads.grids.size(); ++i) {
-            const bool rings = job_.quads.grids[i].shape != geometry::ChartShape::Rectangle;
+            const geometry::ChartShape shape = job_.quads.grids[i].shape;
+            const bool rings = shape != geometry::ChartShape::Rectangle;
+            const bool folds = shape == geometry::ChartShape::Pillowcase;
             add("<li>Cylinder {}: lay out all warp strips side by side in the order of the table's "
                 "columns. Weave in the weft strips from the bottom row up, over and under as "
-                "drawn.{}</li>\n",
+                "drawn.{}{}</li>\n",
                 i + 1,
-                rings ? " Close each weft ring with its tab before the next one follows." : "");
+                rings ? " Close each weft ring with its tab before the next one follows." : "",
+                folds ? " The first and the last ring lie flat, like the ends of a pillowcase: "
+                        "there each warp strip goes on over the fold into another column, and "
+                        "closes on itself where it began."
+                      : "");
         }
         out_ += "</ol>\n";
     }
