@@ -11,6 +11,7 @@
 #include <numbers>
 #include <random>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -315,6 +316,74 @@ TEST_P(Level, FlipsEndDelaunayAndSimplicial) {
     EXPECT_LE(flipped.forced_weights, static_cast<int>(rings.edges.size() / 500));
 }
 
+// Whether the vertices of a line are joined in one cycle, and to no others of it.
+bool is_cycle(const LinedSurface& surface, const VertexRings& rings, int line) {
+    const std::vector<int>& lines = surface.line_of_vertex;
+    const auto first = std::find(lines.begin(), lines.end(), line);
+    const int start = static_cast<int>(first - lines.begin());
+    int steps = 0;
+    int before = -1;
+    int v = start;
+    do {
+        std::vector<int> along;
+        for (int k = rings.begin[at(v)]; k < rings.begin[at(v) + 1]; ++k) {
+            const int w = rings.slots[at(k)].neighbour;
+            if (lines[at(w)] == line) {
+                along.push_back(w);
+            }
+        }
+        if (along.size() != 2) {
+            return false;
+        }
+        const int next = along[0] == before ? along[1] : along[0];
+        before = std::exchange(v, next);
+    } while (++steps < static_cast<int>(lines.size()) && v != start);
+    return v == start && steps == line_length(surface, line);
+}
+
+TEST(LinesInside, SurviveCollapseAndFlips) {
+    // Two closed lines round the tube of a torus.
+    constexpr int kAcross = 40;
+    constexpr int kAlong = 90;
+    LinedSurface surface;
+    surface.mesh = testing::make_torus(kAcross, kAlong, 0.4);
+    std::minstd_rand random(3);
+    testing::jitter(surface.mesh, 0.02, random);
+    surface.line_of_vertex.assign(surface.mesh.positions.size(), -1);
+    for (int k = 0; k < kAcross; ++k) {
+        surface.line_of_vertex[at(k)] = 0;
+        surface.line_of_vertex[at(45 * kAcross + k)] = 1;
+    }
+    for (const std::size_t target : {1500U, 600U, 150U}) {
+        const FlippedSurface flipped = flip_to_delaunay(surface, rings_of(surface.mesh));
+        EXPECT_FALSE(flipped.flips.empty());
+        surface = flipped_surface(surface, flipped);
+        for (const int line : {0, 1}) {
+            EXPECT_TRUE(is_cycle(surface, flipped.rings, line));
+        }
+        surface =
+            coarsen(surface, {.target_vertices = target, .least_line_vertices = 10}, {}).surface;
+        EXPECT_EQ(surface.mesh.positions.size(), target);
+        const VertexRings rings = rings_of(surface.mesh);
+        for (const int line : {0, 1}) {
+            EXPECT_TRUE(is_cycle(surface, rings, line));
+            EXPECT_GE(line_length(surface, line), 10);
+        }
+    }
+    EXPECT_LT(line_length(surface, 0), kAcross);
+}
+
+TEST(Collapse, IsStoppedOnRequest) {
+    LinedSurface surface;
+    surface.mesh = testing::make_torus(100, 200, 0.4);
+    surface.line_of_vertex.assign(surface.mesh.positions.size(), -1);
+    std::stop_source source;
+    source.request_stop();
+    Context context;
+    context.stop = source.get_token();
+    EXPECT_THROW(coarsen(surface, {.target_vertices = 100}, context), Cancelled);
+}
+
 // --- maps -------------------------------------------------------------------------------------
 
 // A surface with its flipped triangles.
@@ -499,6 +568,54 @@ TEST_P(MapLevel, IsCutIntoAnnuliAfterFlipsAreUndone) {
 
 TEST_P(CutLevel, IsCutIntoAnnuliAfterFlipsAreUndone) {
     expect_annuli(whole_);
+}
+
+// The word of edge 1-3 after the edge 0-4 of `triangles` was flipped to it, on a map that puts
+// vertices 0 and 4 on the first edge of a path of two, all others on the second.
+Word word_after_flip(const std::vector<std::array<int, 3>>& before,
+                     const std::vector<std::array<int, 3>>& after) {
+    const VertexRings target = build_vertex_rings(build_half_edges(after, 5), 5);
+    std::map<std::pair<int, int>, int> number;
+    for (std::size_t e = 0; e < target.edges.size(); ++e) {
+        number[ends_of(target.edges[e])] = static_cast<int>(e);
+    }
+    const int flipped_edge = number.at({1, 3});
+    number[{0, 4}] = flipped_edge;
+    FlippedSurface flipped;
+    flipped.half_edges = build_half_edges(before, 5);
+    std::vector<int> numbers;
+    for (int h = 0; h < flipped.half_edges.size(); ++h) {
+        numbers.push_back(
+            number.at(std::minmax(flipped.half_edges.from_of(h), flipped.half_edges.to_of(h))));
+    }
+    flipped.rings = build_vertex_rings(flipped.half_edges, 5, numbers);
+    flipped.flips = {flipped_edge};
+    GraphMap map;
+    map.graph = {3, {{0, 1, 1.0}, {1, 2, 1.0}}};
+    map.graph_edge = {0, 1, 1, 1, 0};
+    map.t = {0.9, 0.1, 0.2, 0.1, 0.5};
+    map.fixed.assign(5, 0);
+    for (const MeshEdge& edge : flipped.rings.edges) {
+        const int from = map.graph_edge[at(edge.from)];
+        const int to = map.graph_edge[at(edge.to)];
+        map.words.push_back(from == to ? Word{} : from < to ? Word{0, 2} : Word{3, 1});
+    }
+    undo_flips(map, flipped, {}, target);
+    return map.words[at(flipped_edge)];
+}
+
+TEST(UndoneFlip, GoesRoundAPeninsula) {
+    // Vertex 0 has a whole ring 4, 1, 2, 3, of which 1, 2, 3 are in one leg: so are 1 and 3.
+    EXPECT_EQ(word_after_flip({{0, 4, 1}, {0, 1, 2}, {0, 2, 3}, {0, 3, 4}},
+                              {{1, 3, 4}, {3, 1, 0}, {0, 1, 2}, {0, 2, 3}}),
+              Word{});
+}
+
+TEST(UndoneFlip, KeepsLegsApartThatAStripParts) {
+    // Nothing beyond vertex 2 joins 1 and 3: the strip from 0 to 4 lies between them.
+    const Word word =
+        word_after_flip({{0, 4, 1}, {0, 3, 4}, {0, 1, 2}}, {{1, 3, 4}, {3, 1, 0}, {0, 1, 2}});
+    EXPECT_EQ(word, (Word{3, 2}));
 }
 
 }  // namespace
