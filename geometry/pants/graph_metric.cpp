@@ -98,9 +98,9 @@ Least least_on_edge(std::span<const Profile> profiles, double length) {
 GraphMetric::GraphMetric(const MetricGraph& graph)
     : nodes_(graph.nodes),
       edges_(graph.edges),
-      between_(at(graph.nodes * graph.nodes), std::numeric_limits<double>::infinity()),
-      first_(at(graph.nodes * graph.nodes), -1) {
-    const auto place = [&](int a, int b) { return at(a * nodes_ + b); };
+      between_(at(graph.nodes) * at(graph.nodes), std::numeric_limits<double>::infinity()),
+      first_(between_.size(), -1) {
+    const auto place = [&](int a, int b) { return pair_of(a, b); };
     for (int node = 0; node < nodes_; ++node) {
         between_[place(node, node)] = 0.0;
     }
@@ -165,7 +165,7 @@ Word GraphMetric::shortest_path(GraphPoint a, GraphPoint b) const {
     Word word{ends[0]};
     const int goal = tail(ends[1]);
     for (int node = tail(reversed(ends[0])); node != goal; node = tail(reversed(word.back()))) {
-        word.push_back(first_[at(node * nodes_ + goal)]);
+        word.push_back(first_[pair_of(node, goal)]);
     }
     word.push_back(ends[1]);
     return word;

@@ -7,6 +7,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -43,9 +44,11 @@ public:
 
 private:
     double weight(int edge) const { return edges_[static_cast<std::size_t>(edge)].weight; }
-    double node_distance(int a, int b) const {
-        return between_[static_cast<std::size_t>(a * nodes_ + b)];
+    std::size_t pair_of(int a, int b) const {
+        return static_cast<std::size_t>(a) * static_cast<std::size_t>(nodes_) +
+               static_cast<std::size_t>(b);
     }
+    double node_distance(int a, int b) const { return between_[pair_of(a, b)]; }
     // From a node to a point.
     double reach(int node, GraphPoint point) const;
     bool is_compact(std::span<const WeightedPoint> points) const;
