@@ -189,7 +189,8 @@ void tell_of_holes(Foliation& foliation, const Whole& whole, const SurfacePart& 
 
 void tell_of_large_cells(Foliation& foliation) {
     if (!is_even(foliation.mode, foliation.spread)) {
-        foliation.warnings.push_back(
+        foliation.warnings.insert(
+            foliation.warnings.begin(),
             fmt::format("cells are uneven: the largest have edges {:.3g} times the mean",
                         foliation.spread.largest));
     }
