@@ -199,6 +199,7 @@ private:
         std::vector<char> blocked(surface_.positions.size(), 0);
         block(surface_.boundary_loops, blocked);
         std::vector<HomologyClass> classes;
+        classes.reserve(edges_.rank);
         for (const ClassedLoop& other : others) {
             classes.push_back(other.homology);
         }

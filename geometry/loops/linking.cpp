@@ -23,10 +23,10 @@ using Polyline = std::vector<Eigen::Vector3d>;
 
 // Directions of sight without a relation to anything a model could have.
 const std::array<Eigen::Vector3d, 3>& sights() {
-    static const std::array<Eigen::Vector3d, 3> kSights{Eigen::Vector3d(0.3719, 0.5831, 0.7223),
-                                                        Eigen::Vector3d(-0.6971, 0.2287, 0.6795),
-                                                        Eigen::Vector3d(0.1373, -0.8191, 0.5570)};
-    return kSights;
+    static const std::array<Eigen::Vector3d, 3> all{Eigen::Vector3d(0.3719, 0.5831, 0.7223),
+                                                    Eigen::Vector3d(-0.6971, 0.2287, 0.6795),
+                                                    Eigen::Vector3d(0.1373, -0.8191, 0.5570)};
+    return all;
 }
 
 // Rotates space so that the sight runs along z.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <queue>
 #include <utility>
 
 namespace leafcutter::geometry {
@@ -93,68 +92,74 @@ std::vector<int> LoopSearch::close(int a, int b) const {
         back.pop_back();
     }
     back.pop_back();
-    std::vector<int> vertices;
-    for (auto s = there.rbegin(); s != there.rend(); ++s) {
-        vertices.push_back(states_[at(*s)].vertex);
+    std::reverse(there.begin(), there.end());
+    there.insert(there.end(), back.begin(), back.end());
+    for (int& state : there) {
+        state = states_[at(state)].vertex;
     }
-    for (const int s : back) {
-        vertices.push_back(states_[at(s)].vertex);
-    }
-    return vertices;
+    return there;
 }
 
 std::optional<ClassedLoop> LoopSearch::loop_through(int root,
                                                     const std::vector<char>& blocked,
                                                     const Wanted& wanted,
                                                     const Context& context) {
-    using Entry = std::pair<double, int>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    queue_ = {};
     states_.clear();
     state_of_place_.clear();
     const int start = state_at(root, number_of_sum(HomologyClass(edges_.rank, 0)));
     states_[at(start)].distance = 0.0;
-    queue.emplace(0.0, start);
-    double best = wanted.shorter_than;
+    queue_.emplace(0.0, start);
     std::optional<ClassedLoop> found;
-    while (!queue.empty() && 2.0 * queue.top().first < best && states_.size() < kMostStates) {
-        const auto [distance, here] = queue.top();
-        queue.pop();
+    const auto best = [&] { return found ? found->length : wanted.shorter_than; };
+    while (!queue_.empty() && 2.0 * queue_.top().first < best() && states_.size() < kMostStates) {
+        const int here = queue_.top().second;
+        queue_.pop();
         if (states_[at(here)].settled) {
             continue;
         }
         context.check();
         states_[at(here)].settled = true;
-        const State from = states_[at(here)];
-        for (int k = rings_.begin[at(from.vertex)]; k < rings_.begin[at(from.vertex) + 1]; ++k) {
+        const int v = states_[at(here)].vertex;
+        for (int k = rings_.begin[at(v)]; k < rings_.begin[at(v) + 1]; ++k) {
             const RingSlot& slot = rings_.slots[at(k)];
-            if (blocked[at(slot.neighbour)] != 0) {
-                continue;
-            }
-            const int sum = sum_after(from.sum, slot);
-            const int there = state_at(slot.neighbour, sum);
-            State& to = states_[at(there)];
-            const double length = distance + edges_.length[at(slot.edge)];
-            if (!to.settled) {
-                if (to.distance < 0.0 || length < to.distance) {
-                    to.distance = length;
-                    to.parent = here;
-                    to.sum = sum;
-                    queue.emplace(length, there);
-                }
-            } else if (to.sum != sum && length + to.distance < best) {
-                HomologyClass homology = difference(sum, to.sum);
-                if (!wanted.homology(homology)) {
-                    continue;
-                }
-                std::vector<int> loop = close(here, there);
-                if (is_simple(loop)) {
-                    best = length + to.distance;
-                    found = ClassedLoop{std::move(loop), std::move(homology), best};
-                }
+            if (blocked[at(slot.neighbour)] == 0) {
+                go_along(here, slot, {wanted.homology, best()}, found);
             }
         }
     }
     return found;
+}
+
+// Reaches the next place, or closes a loop there.
+void LoopSearch::go_along(int here,
+                          const RingSlot& slot,
+                          const Wanted& wanted,
+                          std::optional<ClassedLoop>& found) {
+    const int sum = sum_after(states_[at(here)].sum, slot);
+    const int there = state_at(slot.neighbour, sum);
+    State& to = states_[at(there)];
+    const double length = states_[at(here)].distance + edges_.length[at(slot.edge)];
+    if (!to.settled) {
+        if (to.distance < 0.0 || length < to.distance) {
+            to.distance = length;
+            to.parent = here;
+            to.sum = sum;
+            queue_.emplace(length, there);
+        }
+        return;
+    }
+    if (to.sum == sum || length + to.distance >= wanted.shorter_than) {
+        return;
+    }
+    HomologyClass homology = difference(sum, to.sum);
+    if (!wanted.homology(homology)) {
+        return;
+    }
+    std::vector<int> loop = close(here, there);
+    if (is_simple(loop)) {
+        found = ClassedLoop{std::move(loop), std::move(homology), length + to.distance};
+    }
 }
 
 }  // namespace leafcutter::geometry

@@ -10,8 +10,9 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <span>
+#include <queue>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "geometry/context.h"
@@ -66,6 +67,10 @@ private:
     HomologyClass difference(int a, int b) const;
     int state_at(int vertex, int sum);
     std::vector<int> close(int a, int b) const;
+    void go_along(int here,
+                  const RingSlot& slot,
+                  const Wanted& wanted,
+                  std::optional<ClassedLoop>& found);
 
     const VertexRings& rings_;
     const ClassedEdges& edges_;
@@ -74,6 +79,8 @@ private:
     std::vector<HomologyClass> sums_;
     std::map<HomologyClass, int> sheets_;
     std::vector<int> sheet_of_sum_;
+    using Entry = std::pair<double, int>;  // Distance and state.
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
     std::vector<State> states_;
     std::unordered_map<std::uint64_t, int> state_of_place_;
 };

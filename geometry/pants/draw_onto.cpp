@@ -1,7 +1,6 @@
 #include "geometry/pants/draw_onto.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <span>
 
@@ -94,10 +93,9 @@ private:
         if (slots_[k].link < 0 || a.empty() || b.empty() || a[0] != b[0] || a[1] != b[1]) {
             return false;
         }
-        const std::array<Dart, 2> turn_back{reversed(a[1]), a[1]};
-        const Word& link = map_.words[at(slots_[k].link)];
-        return std::search(link.begin(), link.end(), turn_back.begin(), turn_back.end()) ==
-               link.end();
+        // The way between them turns back at the node only if they part there.
+        const std::size_t parted = a.size() + b.size() - 2;
+        return map_.words[at(slots_[k].link)].size() != parted;
     }
 
     GraphMap& map_;

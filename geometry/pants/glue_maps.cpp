@@ -38,7 +38,10 @@ public:
             const std::size_t whole = at(part.piece.source_vertex[v]);
             map_.graph_edge[whole] = edge_of(place.forward);
             map_.t[whole] = place.offset + place.scale * part.map.t[v];
-            map_.fixed[whole] = is_on_cut[v] != 0 ? 0 : part.map.fixed[v];
+            map_.fixed[whole] = part.map.fixed[v];
+            if (is_on_cut[v] != 0) {
+                map_.fixed[whole] = 0;
+            }
         }
         for (std::size_t e = 0; e < part.rings.edges.size(); ++e) {
             const int from = part.piece.source_vertex[at(part.rings.edges[e].from)];

@@ -17,11 +17,18 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
+struct Saddle {
+    int vertex = 0;
+    Dart own = -1;  // Leaves the node along the vertex's own edge.
+    int keep = -1;
+};
+
 // Ring slots of a saddle that see the same leg in several sectors lie on different edges of the
 // tree: all get an essential backtrack but one, that with the neighbour `keep` if there is one.
-void part_sectors(GraphMap& map, const VertexRings& rings, int v, Dart own, int keep) {
-    const auto begin = at(rings.begin[at(v)]);
-    const std::size_t count = at(rings.begin[at(v) + 1]) - begin;
+void part_sectors(GraphMap& map, const VertexRings& rings, const Saddle& saddle) {
+    const Dart own = saddle.own;
+    const auto begin = at(rings.begin[at(saddle.vertex)]);
+    const std::size_t count = at(rings.begin[at(saddle.vertex) + 1]) - begin;
     const auto seen = [&](const RingSlot& slot) {
         const Word& word = map.words[at(slot.edge)];
         return slot.forward ? word : reversed(word);
@@ -32,7 +39,7 @@ void part_sectors(GraphMap& map, const VertexRings& rings, int v, Dart own, int 
         is_own[k] = word.empty() || word.front() == own ? 1 : 0;
     }
     std::size_t shift = 0;
-    while (shift < count && rings.slots[begin + shift].neighbour != keep) {
+    while (shift < count && rings.slots[begin + shift].neighbour != saddle.keep) {
         ++shift;
     }
     shift = shift == count ? count - 1 : shift;
@@ -101,7 +108,7 @@ GraphMap sweep_map(const ReebGraph& reeb, const PantsGraph& pants) {
     }
     for (std::size_t v = 0; v < mesh.owner.size(); ++v) {
         if (reeb.node_of_vertex[v] >= 0 && spots[v].node >= 0) {
-            part_sectors(map, mesh.rings, static_cast<int>(v), spots[v].dart, mesh.owner[v]);
+            part_sectors(map, mesh.rings, {static_cast<int>(v), spots[v].dart, mesh.owner[v]});
         }
     }
     return map;

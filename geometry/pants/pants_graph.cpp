@@ -189,6 +189,56 @@ void PantsGraph::name_first_dart(int graph_node, Dart dart) {
     }
 }
 
+std::vector<LimbAtSaddle> PantsGraph::limbs_at_saddles() const {
+    const SweepMesh& mesh = reeb_.mesh;
+    std::vector<char> has_graph_node(mesh.owner.size(), 0);  // Per owner.
+    std::vector<char> is_parted(mesh.owner.size(), 0);
+    for (std::size_t v = 0; v < mesh.owner.size(); ++v) {
+        if (mesh.owner[v] < 0) {
+            continue;
+        }
+        const std::size_t owner = at(mesh.owner[v]);
+        const int node = reeb_.node_of_vertex[v];
+        is_parted[owner] = is_parted[owner] != 0 || v != owner ? 1 : 0;
+        if (node >= 0 && graph_node_[at(node)] >= 0) {
+            has_graph_node[owner] = 1;
+        }
+    }
+    std::vector<LimbAtSaddle> limbs;
+    for (std::size_t v = 0; v < mesh.owner.size(); ++v) {
+        const int owner = mesh.owner[v];
+        if (owner < 0 || mesh.keeps_limbs[v] != 0 || is_parted[at(owner)] == 0 ||
+            has_graph_node[at(owner)] == 0) {
+            continue;
+        }
+        const int towards = limb_neighbour(static_cast<int>(v));
+        if (towards >= 0) {
+            limbs.push_back({owner, towards});
+        }
+    }
+    return limbs;
+}
+
+// The owner of a neighbour of node vertex `v` in a limb that hangs at v, or -1.
+int PantsGraph::limb_neighbour(int v) const {
+    const int node = reeb_.node_of_vertex[at(v)];
+    if (node < 0 || degree_[at(node)] < 2) {
+        return -1;  // Not a node, or in a limb itself.
+    }
+    const VertexRings& rings = reeb_.mesh.rings;
+    for (int k = rings.begin[at(v)]; k < rings.begin[at(v) + 1]; ++k) {
+        const RingSlot& slot = rings.slots[at(k)];
+        const std::vector<int>& arcs = reeb_.arcs_of_edge[at(slot.edge)];
+        const bool up = (reeb_.edge_runs_up[at(slot.edge)] != 0) == slot.forward;
+        const int owner = reeb_.mesh.owner[at(slot.neighbour)];
+        if (!is_core(up ? arcs.front() : arcs.back()) && owner >= 0 &&
+            owner != reeb_.mesh.owner[at(v)]) {
+            return owner;
+        }
+    }
+    return -1;
+}
+
 Word PantsGraph::word_of(const std::vector<int>& arcs, const Spot& low, const Spot& high) const {
     Word word;
     for (const int arc : arcs) {

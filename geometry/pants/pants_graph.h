@@ -30,6 +30,10 @@ public:
     // from the leg in which its owner lies.
     Spot spot_of_vertex(int v) const;
 
+    // Limbs that start at parts of saddles of higher order that have a node of the graph among
+    // their parts, but for those taken off already.
+    std::vector<LimbAtSaddle> limbs_at_saddles() const;
+
     // The word of a mesh edge between two spots, from the arcs it runs through upwards.
     Word word_of(const std::vector<int>& arcs, const Spot& low, const Spot& high) const;
 
@@ -37,6 +41,7 @@ private:
     bool is_core(int arc) const { return pruned_[static_cast<std::size_t>(arc)] == 0; }
     Dart dart_up(int arc) const;  // The dart that an arc runs along, upwards.
     Spot seen_towards(int owner, int v, Spot spot) const;
+    int limb_neighbour(int v) const;
     double arc_length(int arc) const;
     Spot spot_on_arc(int arc, double above_low) const;
     int other_end(int arc, int node) const;

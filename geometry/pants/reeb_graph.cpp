@@ -4,8 +4,13 @@
 #include <array>
 #include <utility>
 
+#include "geometry/pants/pants_graph.h"
+
 namespace leafcutter::geometry {
 namespace {
+
+// Taking limbs off saddles may show new ones.
+constexpr int kMostRounds = 8;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -130,10 +135,18 @@ ReebGraph build_reeb_graph(std::span<const std::array<int, 3>> triangles,
                            std::span<const std::vector<int>> boundary_loops,
                            std::span<const char> loop_is_low,
                            int turn) {
-    SweepMesh mesh = make_sweep_mesh(triangles, values, boundary_loops, loop_is_low, turn);
-    ReebGraph graph = Sweep(mesh).run();
-    graph.mesh = std::move(mesh);
-    return graph;
+    std::vector<LimbAtSaddle> limbs;
+    for (int round = 0;; ++round) {
+        SweepMesh mesh =
+            make_sweep_mesh(triangles, values, boundary_loops, loop_is_low, limbs, turn);
+        ReebGraph graph = Sweep(mesh).run();
+        graph.mesh = std::move(mesh);
+        const std::vector<LimbAtSaddle> left = PantsGraph(graph).limbs_at_saddles();
+        if (left.empty() || round == kMostRounds) {
+            return graph;
+        }
+        limbs.insert(limbs.end(), left.begin(), left.end());
+    }
 }
 
 }  // namespace leafcutter::geometry

@@ -15,10 +15,10 @@ std::size_t at(int index) {
 }
 
 // When the sweep meets a vertex, before its value is asked for.
-enum Stage { kLowApex, kLowLoop, kLowChord, kSurface, kHighChord, kHighLoop, kHighApex };
+enum class Stage { LowApex, LowLoop, LowChord, Surface, HighChord, HighLoop, HighApex };
 
 struct Place {
-    int stage = kSurface;
+    Stage stage = Stage::Surface;
     double value = 0.0;
     int vertex = 0;  // Tells equal values apart; parts of a saddle share it,
     int part = 0;    // and are told apart by this.
@@ -37,7 +37,7 @@ public:
         low_ = *low;
         high_ = *high;
         for (std::size_t v = 0; v < values.size(); ++v) {
-            places_.push_back({kSurface, values[v], static_cast<int>(v), 0});
+            places_.push_back({Stage::Surface, values[v], static_cast<int>(v), 0});
             owner_.push_back(static_cast<int>(v));
         }
         for (const auto& t : triangles) {
@@ -46,10 +46,11 @@ public:
     }
 
     void cap(const std::vector<int>& loop, bool is_low) {
-        const int apex = add_vertex({is_low ? kLowApex : kHighApex, end_value(is_low), 0, 0}, -1);
+        const int apex =
+            add_vertex({is_low ? Stage::LowApex : Stage::HighApex, end_value(is_low), 0, 0}, -1);
         for (std::size_t i = 0; i < loop.size(); ++i) {
             Place& place = places_[at(loop[i])];
-            place.stage = is_low ? kLowLoop : kHighLoop;
+            place.stage = is_low ? Stage::LowLoop : Stage::HighLoop;
             place.value = end_value(is_low);
             add_triangle({loop[(i + 1) % loop.size()], loop[i], apex});
         }
@@ -57,18 +58,44 @@ public:
 
     // Splits interior edges that join two loop vertices of one stage.
     void split_chords() {
-        for (std::size_t t = 0; t < triangles_.size(); ++t) {  // Grows as edges are split.
-            const std::array<int, 3> corners = triangles_[t];
+        std::size_t next = 0;
+        while (next < triangles_.size()) {  // Grows as edges are split.
+            const std::array<int, 3> corners = triangles_[next++];
             for (std::size_t k = 0; k < 3; ++k) {
                 const int a = corners[k];
                 const int b = corners[(k + 1) % 3];
-                const int stage = places_[at(a)].stage;
-                const bool on_loops = stage == kLowLoop || stage == kHighLoop;
+                const Stage stage = places_[at(a)].stage;
+                const bool on_loops = stage == Stage::LowLoop || stage == Stage::HighLoop;
                 if (a < b && on_loops && places_[at(b)].stage == stage && !is_capped(a, b)) {
                     split_edge(a, b);
                 }
             }
         }
+    }
+
+    // Takes the run of the ring that a limb starts in off its saddle, if there are other runs of
+    // its kind.
+    void take_off(const LimbAtSaddle& limb, int number) {
+        const std::vector<int> ring = ring_of(limb.saddle);
+        const auto towards = std::find_if(ring.begin(), ring.end(), [&](int n) {
+            return owner_[at(n)] == limb.neighbour && n != limb.saddle;
+        });
+        if (towards == ring.end() || starts_of_upper_runs(limb.saddle, ring).size() < 2) {
+            return;
+        }
+        const bool up = above(*towards, limb.saddle);
+        const std::size_t count = ring.size();
+        auto begin = static_cast<std::size_t>(towards - ring.begin());
+        std::size_t end = begin;
+        while (above(ring[begin], limb.saddle) == up) {
+            begin = (begin + count - 1) % count;
+        }
+        while (above(ring[end], limb.saddle) == up) {
+            end = (end + 1) % count;
+        }
+        const int part = up ? -1 - number : std::numeric_limits<int>::max() - number;
+        pull_off(limb.saddle, ring, {begin, end}, part);
+        keep_limbs_of_newest();
     }
 
     void part_saddles(int turn) {
@@ -77,13 +104,18 @@ public:
             if (owner_[at(v)] < 0) {
                 continue;
             }
-            for (int part = std::numeric_limits<int>::max();; --part) {
+            for (int part = std::numeric_limits<int>::max() / 2;; --part) {
                 const std::vector<int> ring = ring_of(v);
                 const std::vector<std::size_t> ups = starts_of_upper_runs(v, ring);
                 if (ups.size() < 3) {
                     break;
                 }
-                pull_off(v, ring, ups[at(turn) % ups.size()], part);
+                const std::size_t end = ups[at(turn) % ups.size()];
+                std::size_t begin = (end + ring.size() - 1) % ring.size();
+                while (!above(ring[begin], v)) {
+                    begin = (begin + ring.size() - 1) % ring.size();
+                }
+                pull_off(v, ring, {begin, end}, part);
             }
         }
     }
@@ -96,6 +128,8 @@ public:
         mesh.triangles = std::move(triangles_);
         mesh.surface_vertices = surface_vertices;
         mesh.owner = std::move(owner_);
+        mesh.keeps_limbs = std::move(keeps_limbs_);
+        mesh.keeps_limbs.resize(places_.size(), 0);
         mesh.order.resize(places_.size());
         mesh.rank.resize(places_.size());
         std::iota(mesh.order.begin(), mesh.order.end(), 0);
@@ -120,6 +154,11 @@ private:
         owner_.push_back(owner);
         incident_.emplace_back();
         return v;
+    }
+
+    void keep_limbs_of_newest() {
+        keeps_limbs_.resize(places_.size(), 0);
+        keeps_limbs_.back() = 1;
     }
 
     void add_triangle(const std::array<int, 3>& corners) {
@@ -151,8 +190,8 @@ private:
     bool is_capped(int a, int b) const {
         for (const int t : triangles_at(a, b)) {
             for (const int v : triangles_[at(t)]) {
-                const int stage = places_[at(v)].stage;
-                if (stage == kLowApex || stage == kHighApex) {
+                const Stage stage = places_[at(v)].stage;
+                if (stage == Stage::LowApex || stage == Stage::HighApex) {
                     return true;
                 }
             }
@@ -162,8 +201,9 @@ private:
 
     void split_edge(int a, int b) {
         Place place = places_[at(a)];
-        place.stage = place.stage == kLowLoop ? kLowChord : kHighChord;
+        place.stage = place.stage == Stage::LowLoop ? Stage::LowChord : Stage::HighChord;
         const int middle = add_vertex(place, a);
+        keep_limbs_of_newest();
         for (const int t : triangles_at(a, b)) {
             std::array<int, 3> other = triangles_[at(t)];
             *std::find(other.begin(), other.end(), a) = middle;
@@ -202,15 +242,17 @@ private:
         return starts;
     }
 
-    // A new vertex just above v takes the lower run before the upper one that starts at `end`, and
-    // the two slots next to it: a simple saddle, with v below it.
-    void pull_off(int v, const std::vector<int>& ring, std::size_t end, int part) {
+    struct Slots {
+        std::size_t begin = 0;
+        std::size_t end = 0;
+    };
+
+    // A new vertex next to v takes over the run of slots between two, and is joined to these two
+    // and to v: a simple saddle if v is on the run's side of it.
+    void pull_off(int v, const std::vector<int>& ring, Slots slots, int part) {
         const std::size_t count = ring.size();
-        std::size_t begin = (end + count - 1) % count;
-        while (!above(ring[begin], v)) {
-            begin = (begin + count - 1) % count;
-        }
-        const Place& base = places_[at(v)];
+        const auto [begin, end] = slots;
+        const Place base = places_[at(v)];
         const int fresh = add_vertex({base.stage, base.value, base.vertex, part}, owner_[at(v)]);
         for (std::size_t k = begin; k != end; k = (k + 1) % count) {
             for (const int t : triangles_at(v, ring[k])) {
@@ -229,6 +271,7 @@ private:
     std::vector<std::vector<int>> incident_;  // Per vertex: its triangles.
     std::vector<Place> places_;
     std::vector<int> owner_;
+    std::vector<char> keeps_limbs_;  // As far as there are any.
     double low_ = 0.0;
     double high_ = 0.0;
 };
@@ -239,12 +282,16 @@ SweepMesh make_sweep_mesh(std::span<const std::array<int, 3>> triangles,
                           std::span<const double> values,
                           std::span<const std::vector<int>> boundary_loops,
                           std::span<const char> loop_is_low,
+                          std::span<const LimbAtSaddle> limbs,
                           int turn) {
     Builder builder(triangles, values);
     for (std::size_t k = 0; k < boundary_loops.size(); ++k) {
         builder.cap(boundary_loops[k], loop_is_low[k] != 0);
     }
     builder.split_chords();
+    for (std::size_t k = 0; k < limbs.size(); ++k) {
+        builder.take_off(limbs[k], static_cast<int>(k));
+    }
     builder.part_saddles(turn);
     return builder.finish(static_cast<int>(values.size()));
 }

@@ -22,9 +22,18 @@ struct SweepMesh {
     VertexRings rings;
     int surface_vertices = 0;  // The surface's own come first, then one apex for each loop.
     std::vector<double> value;
-    std::vector<int> owner;  // Itself for the surface's own vertices, -1 for an apex.
-    std::vector<int> order;  // Vertices as the sweep meets them,
-    std::vector<int> rank;   // and the inverse.
+    std::vector<int> owner;         // Itself for the surface's own vertices, -1 for an apex.
+    std::vector<char> keeps_limbs;  // Added to take a limb off a saddle, or on a chord.
+    std::vector<int> order;         // Vertices as the sweep meets them,
+    std::vector<int> rank;          // and the inverse.
+};
+
+// A limb that ends in the surface and starts at a saddle of higher order, towards a neighbour of
+// it. It is taken off first, to the saddle's other side: left on, it would part what is connected
+// round it.
+struct LimbAtSaddle {
+    int saddle = 0;
+    int neighbour = 0;
 };
 
 // `values` per vertex; equal ones are told apart by index. Loops (surface to the left) are level
@@ -35,6 +44,7 @@ SweepMesh make_sweep_mesh(std::span<const std::array<int, 3>> triangles,
                           std::span<const double> values,
                           std::span<const std::vector<int>> boundary_loops,
                           std::span<const char> loop_is_low,
+                          std::span<const LimbAtSaddle> limbs = {},
                           int turn = 0);
 
 }  // namespace leafcutter::geometry
