@@ -261,8 +261,8 @@ CoarseMap solve_one(const Hierarchy::Level& level,
                     const Context& context) {
     CoarseMap solved;
     solved.map = std::move(map);
-    solved.report =
-        solve_harmonic_map(solved.map, level.flipped.rings, level.flipped.weights, start, context);
+    solved.report = solve_harmonic_map(solved.map, level.flipped.rings, level.flipped.weights,
+                                       {start, MapAccuracy::Draft}, context);
     judge(solved, level);
     return solved;
 }
@@ -434,7 +434,19 @@ std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
 }
 
 FineMap refine_map(const Hierarchy& hierarchy, const CoarseMap& coarse, const Context& context) {
-    FineMap fine{coarse.map, coarse.report};
+    FineMap fine{coarse.map, {}};
+    const auto improve = [&](const Hierarchy::Level& level) {
+        const HarmonicMapReport report = solve_harmonic_map(
+            fine.map, level.flipped.rings, level.flipped.weights, MapStart::Warm, context);
+        fine.report.energy = report.energy;
+        fine.report.iterations += report.iterations;
+        fine.report.factorizations += report.factorizations;
+        fine.report.solves += report.solves;
+        fine.report.residual = report.residual;
+        fine.report.converged = report.converged;
+        fine.report.energies = report.energies;
+    };
+    improve(hierarchy.levels.back());
     for (std::size_t k = hierarchy.levels.size() - 1;; --k) {
         const Hierarchy::Level& level = hierarchy.levels[k];
         undo_flips(fine.map, level.flipped, level.surface, level.rings);
@@ -452,14 +464,7 @@ FineMap refine_map(const Hierarchy& hierarchy, const CoarseMap& coarse, const Co
         }
         settle_vertices(fine.map, finer.flipped.rings, finer.flipped.weights, inserted,
                         kSettlePasses);
-        const HarmonicMapReport report = solve_harmonic_map(
-            fine.map, finer.flipped.rings, finer.flipped.weights, MapStart::Warm, context);
-        fine.report.energy = report.energy;
-        fine.report.iterations += report.iterations;
-        fine.report.factorizations += report.factorizations;
-        fine.report.solves += report.solves;
-        fine.report.residual = report.residual;
-        fine.report.converged = report.converged;
+        improve(finer);
     }
 }
 
