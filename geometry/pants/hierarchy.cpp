@@ -26,6 +26,7 @@ constexpr std::array<double, 2> kEveningPowers{-0.25, -0.5};
 constexpr int kEveningSteps = 3;
 // What a factor e of loop length costs, in units of unevenness.
 constexpr double kLengthShare = 0.1;
+constexpr double kScoreStep = 1e-3;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -219,8 +220,11 @@ void judge(CoarseMap& solved, const Hierarchy::Level& level) {
             std::sqrt(part.surface * part.flat) / solved.map.weight(solved.map.graph_edge[at(v)]);
     }
     solved.unevenness = std::sqrt(square / surface);
+    // Differences that a draft doesn't know are no differences: equals keep their order.
     solved.score =
-        solved.unevenness + kLengthShare * std::log(solved.loop_length / std::sqrt(surface));
+        kScoreStep * std::round((solved.unevenness +
+                                 kLengthShare * std::log(solved.loop_length / std::sqrt(surface))) /
+                                kScoreStep);
 }
 
 // Candidates on the flipped surface, whose edges have numbers of their own: a flip keeps them.
