@@ -38,7 +38,7 @@ constexpr double kNotableExcess = 0.1;
 constexpr double kImpossibleExcess = 1.0;
 constexpr double kAreaTolerance = 1e-6;
 // A cylinder with less of the surface has all but collapsed.
-constexpr double kSqueezedShare = 1e-4;
+constexpr double kSqueezedShare = 1e-6;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);

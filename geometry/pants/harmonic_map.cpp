@@ -17,6 +17,8 @@ constexpr int kRescueSweeps = 5;
 constexpr int kHalvings = 8;
 // A step that gains less than this part of the energy ends the iteration.
 constexpr double kLeastGain = 1e-11;
+// Blocked vertices may free themselves in the next steps; after so many they won't.
+constexpr int kQuietIfBlocked = 4;
 constexpr double kDraftGain = 1e-4;
 constexpr int kDraftIterations = 15;
 
@@ -48,6 +50,7 @@ public:
         }
         HarmonicMapReport report;
         report.energies.push_back(energy());
+        int quiet = 0;
         while (report.iterations < most_iterations && !report.converged) {
             context_.check();
             const double before = report.energies.back();
@@ -55,7 +58,8 @@ public:
             report.energies.push_back(energy());
             ++report.iterations;
             const bool small = before - report.energies.back() < least_gain * before;
-            report.converged = small && (draft || !any_blocked());
+            quiet = small ? quiet + 1 : 0;
+            report.converged = small && (draft || !any_blocked() || quiet >= kQuietIfBlocked);
         }
         report.energy = report.energies.back();
         report.factorizations = system_.factorizations();

@@ -30,7 +30,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kSamples = 7;  // Per side of a quad.
-constexpr double kCapFactor = 1.2;
+constexpr double kCapFactor = 1.1;
 
 struct Quad {
     Vector3d a;
