@@ -9,6 +9,7 @@
 
 #include "fab/nest/exact.h"
 #include "fab/nest/grow.h"
+#include "fab/nest/heap_start.h"
 #include "fab/nest/simple_ring.h"
 #include "geometry/error.h"
 
@@ -289,6 +290,37 @@ void leave_out_unplaced(Problem& problem, Packing& packing, InstanceSolution& so
     problem.plan.part_of.resize(kept);
 }
 
+// Whether most parts are long bands that turn freely: those stack well in heaps.
+bool is_banded(const BoardPlan& plan) {
+    std::size_t bands = 0;
+    for (const std::size_t part : plan.part_of) {
+        const Part& p = plan.parts[part];
+        bands += p.turns_freely() && p.diameter > 6.0 * p.width ? 1 : 0;
+    }
+    return 2 * bands > plan.part_of.size();
+}
+
+Packing first_layout(BoardPlan& plan,
+                     const CompactionOptions& options,
+                     const geometry::Context& context) {
+    if (plan.rooms.size() > 1 || !plan.fixed.empty() || !is_banded(plan)) {
+        return first_packing(plan, options.seed, context);
+    }
+    const BoardPlan::Room endless = plan.rooms.front();
+    double area = 0.0;
+    double longest = 0.0;
+    for (const std::size_t part : plan.part_of) {
+        area += plan.parts[part].area;
+        longest = std::max(longest, plan.parts[part].diameter);
+    }
+    plan.rooms.front().width =
+        std::min(endless.width, std::max(3.0 * area / endless.height, 1.5 * longest));
+    HeapStart heap = heap_start(plan, 1, options.seed, context);
+    plan.rooms.front() = endless;
+    return heap.packing.extent.bins == 1 ? std::move(heap.packing)
+                                         : first_packing(plan, options.seed, context);
+}
+
 }  // namespace
 
 InstanceSolution solve(const NestInstance& instance,
@@ -297,7 +329,7 @@ InstanceSolution solve(const NestInstance& instance,
                        const std::function<void(const InstanceSolution&)>& improved) {
     check_instance(instance);
     Problem problem = make_problem(instance);
-    Packing packing = first_packing(problem.plan, options.seed, context);
+    Packing packing = first_layout(problem.plan, options, context);
     InstanceSolution none;
     leave_out_unplaced(problem, packing, none);
     if (packing.positions.empty()) {

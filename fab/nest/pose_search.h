@@ -38,8 +38,9 @@ private:
 
     bool sample(std::size_t item, Position& position);
     void sample_near(std::size_t item, const Position& around, Position& position);
-    void sample_mates(std::size_t item);
+    bool sample_mate(std::size_t item, Position& position);
     void random_turn(const Part& part, Position& position);
+    Eigen::Vector2d pivot(const Part& part);
     void consider(std::size_t item, const Position& position);
     void keep(const Candidate& candidate);
     void descend(std::size_t item, Candidate& candidate, const Steps& steps);
