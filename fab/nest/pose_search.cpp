@@ -12,13 +12,6 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-struct Axis {
-    double x = 0.0;
-    double y = 0.0;
-    bool turn = false;
-    Eigen::Vector2d pivot = Eigen::Vector2d::Zero();
-};
-
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 BandPoint point_at(const Part& part, double along) {
@@ -51,7 +44,7 @@ double step_unit(const Part& part, const TurnedPart& shape) {
 
 }  // namespace
 
-double PoseSearch::loss_of(std::size_t item, const Position& position, float bound) {
+float PoseSearch::loss_of(std::size_t item, const Position& position, float bound) {
     return board_.loss_at(item, board_.turned(item, position, scratch_), position, bound);
 }
 
@@ -207,60 +200,56 @@ void PoseSearch::keep(const Candidate& candidate) {
 
 void PoseSearch::consider(std::size_t item, const Position& position) {
     const float bound = kept_count_ == kKept ? kept_[kKept - 1].loss : kInfinity;
-    const auto loss = static_cast<float>(loss_of(item, position, bound));
+    const auto loss = loss_of(item, position, bound);
     if (loss < bound) {
         keep({position, loss});
     }
 }
 
+PoseSearch::Axis PoseSearch::random_axis(const Part& part) {
+    static constexpr std::array<std::array<double, 2>, 4> kDirections{
+        {{1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}}};
+    if (part.turns_freely() && random_.below(3) == 0) {
+        return {0.0, 0.0, true, pivot(part)};
+    }
+    const auto& [x, y] = kDirections[random_.below(kDirections.size())];
+    return {x, y, false, Eigen::Vector2d::Zero()};
+}
+
 // Randomised coordinate descent; a step that fails shrinks, one that gains grows.
 void PoseSearch::descend(std::size_t item, Candidate& candidate, const Steps& steps) {
-    static constexpr std::array<std::array<double, 2>, 4> kAxes{
-        {{1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}}};
-    const bool turns = board_.plan().part(item).turns_freely();
+    const Part& part = board_.plan().part(item);
     double step_x = steps.start;
     double step_y = steps.start;
-    double step_turn = steps.turn_start_deg;
-    const auto pick = [&]() -> Axis {
-        if (turns && random_.below(3) == 0) {
-            return {0.0, 0.0, true, pivot(board_.plan().part(item))};
-        }
-        const auto& [x, y] = kAxes[random_.below(kAxes.size())];
-        return {x, y, false, Eigen::Vector2d::Zero()};
-    };
-    Axis axis = pick();
-    while (candidate.loss > 0.0F &&
-           (std::max(step_x, step_y) > steps.end || (turns && step_turn > steps.turn_end_deg))) {
-        Position ahead = candidate.position;
-        Position back = candidate.position;
-        ahead.x += axis.x * step_x;
-        ahead.y += axis.y * step_y;
-        back.x -= axis.x * step_x;
-        back.y -= axis.y * step_y;
+    double step_turn = part.turns_freely() ? steps.turn_start_deg : 0.0;
+    const auto step = [&](const Axis& axis, double sign) {
+        Position to = candidate.position;
+        to.x += sign * axis.x * step_x;
+        to.y += sign * axis.y * step_y;
         if (axis.turn) {
-            turn_about(axis.pivot, step_turn, ahead);
-            turn_about(axis.pivot, -step_turn, back);
+            turn_about(axis.pivot, sign * step_turn, to);
         }
-        const auto ahead_loss = static_cast<float>(loss_of(item, ahead, candidate.loss));
+        return to;
+    };
+    Axis axis = random_axis(part);
+    while (candidate.loss > 0.0F &&
+           (std::max(step_x, step_y) > steps.end || step_turn > steps.turn_end_deg)) {
+        const Position ahead = step(axis, 1.0);
+        const Position back = step(axis, -1.0);
+        const float ahead_loss = loss_of(item, ahead, candidate.loss);
         const float bound = std::min(ahead_loss, candidate.loss);
-        const auto back_loss =
-            bound > 0.0F ? static_cast<float>(loss_of(item, back, bound)) : bound;
+        const float back_loss = bound > 0.0F ? loss_of(item, back, bound) : bound;
         const bool forward = ahead_loss <= back_loss;
-        const float loss = forward ? ahead_loss : back_loss;
-        const bool better = loss < candidate.loss;
+        const bool better = std::min(ahead_loss, back_loss) < candidate.loss;
         if (better) {
-            candidate = {forward ? ahead : back, loss};
+            candidate = {forward ? ahead : back, forward ? ahead_loss : back_loss};
         }
         const double factor = better ? 1.1 : 0.5;
-        if (axis.turn) {
-            step_turn *= factor;
-        } else if (axis.x != 0.0 && axis.y != 0.0) {
-            step_x *= std::sqrt(factor);
-            step_y *= std::sqrt(factor);
-        } else {
-            (axis.x != 0.0 ? step_x : step_y) *= factor;
-        }
-        axis = better ? axis : pick();
+        const double shared = axis.x != 0.0 && axis.y != 0.0 ? std::sqrt(factor) : factor;
+        step_turn *= axis.turn ? factor : 1.0;
+        step_x *= axis.x != 0.0 ? shared : 1.0;
+        step_y *= axis.y != 0.0 ? shared : 1.0;
+        axis = better ? axis : random_axis(part);
     }
 }
 
@@ -315,7 +304,7 @@ Candidate PoseSearch::leftmost(std::size_t item, int samples) {
             continue;
         }
         const double at = score(position);
-        if (at < best_score && loss_of(item, position, kInfinity) <= 0.0) {
+        if (at < best_score && loss_of(item, position, kInfinity) <= 0.0F) {
             best = {position, 0.0F};
             best_score = at;
         }
@@ -334,7 +323,7 @@ Candidate PoseSearch::leftmost(std::size_t item, int samples) {
             Position next = best.position;
             next.x += ax * step;
             next.y += ay * step;
-            if (loss_of(item, next, std::numeric_limits<float>::min()) <= 0.0) {
+            if (loss_of(item, next, std::numeric_limits<float>::min()) <= 0.0F) {
                 best.position = next;
                 moved = true;
             }
