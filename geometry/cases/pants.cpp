@@ -11,6 +11,7 @@
 
 #include "geometry/cases/annulus.h"
 #include "geometry/laplacian.h"
+#include "geometry/pants/coarse_maps.h"
 #include "geometry/pants/hierarchy.h"
 #include "geometry/pants/prepare_surface.h"
 #include "geometry/pants/slice.h"
@@ -115,7 +116,7 @@ void check_pieces(const Sliced& sliced, const TriangleMesh& mesh, int euler, int
 }
 
 Solved carry_up(const Hierarchy& hierarchy, const CoarseMap& coarse, const Context& context) {
-    FineMap fine = refine_map(hierarchy, coarse, context);
+    FineMap fine = refine_map(hierarchy, coarse.map, context);
     context.report("foliation", 0.5);
     Solved solved{std::move(fine.map), fine.report, hierarchy.levels.front().surface.mesh, {}};
     const int euler = static_cast<int>(solved.mesh.positions.size()) -
