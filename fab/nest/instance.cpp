@@ -212,6 +212,17 @@ void prove_bin(const NestInstance& instance,
     }
 }
 
+void prove_rotation(const InstanceItem& item, double rotation_deg) {
+    const bool fine = item.allowed_deg.empty() ||
+                      std::any_of(item.allowed_deg.begin(), item.allowed_deg.end(),
+                                  [&](double angle) { return angle == rotation_deg; });
+    if (!fine) {
+        throw geometry::Error(
+            geometry::ErrorKind::SelfCheck, "nest-proof",
+            fmt::format("nest: item {} lies at a rotation that is not allowed", item.id));
+    }
+}
+
 // Fills in what the proof finds: gap, width, densities. Throws Error(SelfCheck).
 void prove(const Problem& problem, InstanceSolution& solution) {
     const NestInstance& instance = problem.instance;
@@ -230,6 +241,7 @@ void prove(const Problem& problem, InstanceSolution& solution) {
         double used = 0.0;
         for (const InstancePlacement& placement : layout.placed) {
             const InstanceItem& item = instance.items[placement.item];
+            prove_rotation(item, placement.rotation_deg);
             rings.push_back({fmt::format("item {}", item.id),
                              to_whole(placed_ring(instance, placement), unit)});
             used += std::abs(signed_area(item.outline));
@@ -290,12 +302,15 @@ void leave_out_unplaced(Problem& problem, Packing& packing, InstanceSolution& so
     problem.plan.part_of.resize(kept);
 }
 
-// Whether most parts are long bands that turn freely: those stack well in heaps.
+// Whether all parts turn freely and most are long bands: those stack well in heaps.
 bool is_banded(const BoardPlan& plan) {
     std::size_t bands = 0;
     for (const std::size_t part : plan.part_of) {
         const Part& p = plan.parts[part];
-        bands += p.turns_freely() && p.diameter > 6.0 * p.width ? 1 : 0;
+        if (!p.turns_freely()) {
+            return false;
+        }
+        bands += p.is_band() ? 1 : 0;
     }
     return 2 * bands > plan.part_of.size();
 }
