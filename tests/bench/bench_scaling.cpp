@@ -1,6 +1,8 @@
 // Seconds and peak memory of whole foliations from 10k to 1M faces, as ratios to one sparse
 // factorisation plus solve of the same surface's Laplacian in the same run.
 //
+// No holes are opened: choosing them takes further foliations, of coarse versions and of the whole.
+//
 // Each measurement runs in a process of its own. `x_factor` compares seconds of the clock, `x_work`
 // processor seconds, which other work on the machine disturbs less.
 
@@ -85,8 +87,11 @@ std::vector<double> foliation(Maker make, int faces) {
     }
     geometry::Context context;
     context.threads = std::max(1U, std::thread::hardware_concurrency());
+    geometry::FoliationOptions options;
+    options.puncture = geometry::PunctureChoice::None;
     geometry::Foliation result;
-    const Spent spent = spent_on([&] { result = geometry::compute_foliation(mesh, {}, context); });
+    const Spent spent =
+        spent_on([&] { result = geometry::compute_foliation(mesh, options, context); });
     return {spent.clock_s,
             spent.work_s,
             triangles,
