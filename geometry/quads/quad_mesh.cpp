@@ -1,9 +1,7 @@
 #include "geometry/quads/quad_mesh.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -34,10 +32,7 @@ constexpr double kClearDirection = 0.2;
 constexpr double kWorseMean = 1.2;
 
 // Of the number of cells, where wide ones would fold over.
-constexpr int kMostDoublings = 4;
-constexpr double kMostRefinedCells = 500.0;
-// Of a cylinder's cells, that may fold over with no more than a warning.
-constexpr double kFoldedShare = 0.02;
+constexpr int kMostDoublings = 5;
 
 void refuse(const std::string& path, const std::string& what) {
     throw Error(ErrorKind::NotSupported, "not-supported-yet", path + ": " + what);
@@ -154,8 +149,7 @@ void check_regions(std::size_t cylinder, const CellRegions& regions, double area
     }
 }
 
-// How many quads face inwards.
-std::size_t count_inverted(const Patch& patch, const CellRegions& regions) {
+void check_facing(std::size_t cylinder, const Patch& patch, const CellRegions& regions) {
     std::size_t inverted = 0;
     for (std::size_t i = 0; i < patch.quads.size(); ++i) {
         const Vector3d& region = regions.vector_area[i];
@@ -164,7 +158,12 @@ std::size_t count_inverted(const Patch& patch, const CellRegions& regions) {
             ++inverted;
         }
     }
-    return inverted;
+    if (inverted > 0) {
+        throw Error(ErrorKind::SelfCheck, "quads-inverted",
+                    fmt::format("quads: {} of {} quads of cylinder {} face inwards; use narrower "
+                                "strips (grid.strip_width_mm)",
+                                inverted, patch.quads.size(), cylinder));
+    }
 }
 
 void append(QuadMesh& mesh, const Patch& patch, const ChartGrid& grid, const CellRegions& regions) {
@@ -188,15 +187,13 @@ struct Work {
     const Cylinder& chart;
     const ChartSampler& sampler;
     double area = 0.0;
-    std::size_t most_inverted = 0;  // Quads that may face inwards.
 };
 
-// Adds the quads, unless more than allowed face inwards; returns how many do.
-std::size_t add_cylinder(QuadMesh& mesh,
-                         const Work& work,
-                         const CylinderGrid& counts,
-                         const GridOptions& options,
-                         const Context& context) {
+void add_cylinder(QuadMesh& mesh,
+                  const Work& work,
+                  const CylinderGrid& counts,
+                  const GridOptions& options,
+                  const Context& context) {
     const ChartGrid grid(work.chart, counts);
     Patch patch = sample_patch(grid, work.sampler, context);
     check_topology(work.cylinder, grid, patch);
@@ -205,11 +202,8 @@ std::size_t add_cylinder(QuadMesh& mesh,
     if (options.half_sag_offset) {
         offset_by_half_sag(patch.vertices, sag_cells(patch, regions, grid, work.sampler));
     }
-    const std::size_t inverted = count_inverted(patch, regions);
-    if (inverted <= work.most_inverted) {
-        append(mesh, patch, grid, regions);
-    }
-    return inverted;
+    check_facing(work.cylinder, patch, regions);
+    append(mesh, patch, grid, regions);
 }
 
 // The grid among `even` and its regraded copies that comes closest to the surface: the smallest
@@ -219,11 +213,9 @@ CylinderGrid closest_grid(const Work& work,
                           const GridOptions& options,
                           const Context& context) {
     const ClosestPoint surface(work.chart.mesh);
-    Work any = work;
-    any.most_inverted = std::numeric_limits<std::size_t>::max();
     const auto distance = [&](const CylinderGrid& grid) {
         QuadMesh mesh;
-        add_cylinder(mesh, any, grid, options, context);
+        add_cylinder(mesh, work, grid, options, context);
         mesh.addresses.assign(mesh.quads.size(), {});
         return measure_quality(mesh, surface, context).overall.surface_distance_percent;
     };
@@ -251,55 +243,36 @@ CylinderGrid closest_grid(const Work& work,
     return even;
 }
 
-CylinderGrid wished_grid(const Work& work,
-                         const GridWish& wish,
-                         const GridOptions& options,
-                         const Context& context) {
-    const CylinderGrid grid = choose_grid(work.chart, wish);
-    return options.spacing == Spacing::Uniform ? grid : closest_grid(work, grid, options, context);
-}
-
 // The cylinder's quads at the wished size, or smaller ones where those would face inwards: a few
-// cells can't follow a small cylinder that bends sharply. What sharp edges fold over at any size is
-// told, if it is little.
+// cells can't follow a small cylinder that bends sharply.
 void add_fine_enough(QuadMesh& mesh,
                      const Work& work,
-                     const GridWish& wish,
+                     GridWish wish,
                      const GridOptions& options,
                      const Context& context) {
     const bool may_refine = !wish.counts.rows || !wish.counts.cols;
-    GridWish finer = wish;
-    for (int doublings = 0; doublings <= (may_refine ? kMostDoublings : 0); ++doublings) {
-        const CylinderGrid grid = wished_grid(work, finer, options, context);
-        if (add_cylinder(mesh, work, grid, options, context) == 0) {
-            if (doublings > 0) {
-                mesh.warnings.push_back(
-                    fmt::format("cylinder {}: has narrower strips than asked for, as wider ones "
-                                "would fold over",
-                                work.cylinder));
+    for (int doublings = 0;; ++doublings) {
+        CylinderGrid grid = choose_grid(work.chart, wish);
+        if (options.spacing != Spacing::Uniform) {
+            grid = closest_grid(work, grid, options, context);
+        }
+        try {
+            add_cylinder(mesh, work, grid, options, context);
+        } catch (const Error& error) {
+            if (error.code() != "quads-inverted" || !may_refine || doublings == kMostDoublings) {
+                throw;
             }
-            return;
+            wish.cells *= 2.0;
+            continue;
         }
-        finer.cells *= 2.0;
-        if (finer.cells > kMostRefinedCells) {
-            break;  // Many cells, a few of them folded: a sharp edge rather than a small cylinder.
+        if (doublings > 0) {
+            mesh.warnings.push_back(
+                fmt::format("cylinder {}: has narrower strips than asked for, as wider ones would "
+                            "fold over",
+                            work.cylinder));
         }
+        return;
     }
-    const CylinderGrid grid = wished_grid(work, wish, options, context);
-    const int quads = grid.rows * grid.cols;
-    Work tolerant = work;
-    tolerant.most_inverted = static_cast<std::size_t>(std::max(kFoldedShare * quads, 1.0));
-    const std::size_t folded = add_cylinder(mesh, tolerant, grid, options, context);
-    if (folded > tolerant.most_inverted) {
-        throw Error(ErrorKind::SelfCheck, "quads-inverted",
-                    fmt::format("quads: {} of {} quads of cylinder {} face inwards; use narrower "
-                                "strips (grid.strip_width_mm) or smooth the model",
-                                folded, quads, work.cylinder));
-    }
-    mesh.warnings.push_back(
-        fmt::format("cylinder {}: {} of {} cells fold over at sharp edges of the "
-                    "model; crease them there, or smooth the model",
-                    work.cylinder, folded, quads));
 }
 
 }  // namespace
