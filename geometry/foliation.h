@@ -117,6 +117,10 @@ struct Cylinder {
     // an edge equal up to a period. Every triangle has positive area in (g, f).
     std::vector<std::array<Eigen::Vector2d, 3>> corner_gf;
 
+    // Per vertex its place in Foliation::critical_points, or -1. Empty where the cylinder borders
+    // on no other.
+    std::vector<int> critical_point;
+
     double width = 0.0;   // Range or period of g: the circumference of a ring.
     double height = 0.0;  // Range or period of f.
     double shear = 0.0;   // Torus: the g part of the second period. Pillowcase: place of a fold.
@@ -131,6 +135,12 @@ struct Cylinder {
 struct Singularity {
     Eigen::Vector3d position;
     int prongs = 0;
+};
+
+// A vertex of the critical graph, by which the cylinders on both sides know the place.
+struct CriticalPoint {
+    Eigen::Vector3d position;
+    int prongs = 2;  // 3 where three cylinders meet.
 };
 
 // How evenly large the cells of a grid of squares are on the surface: they grow and shrink with the
@@ -155,8 +165,9 @@ struct Foliation {
     std::vector<Singularity> singularities;
     // Preimages of the graph's nodes, as polylines from singular point to singular point.
     std::vector<std::vector<Eigen::Vector3d>> critical_graph;
-    std::optional<std::array<int, 4>> corners;  // Disk: those used, mesh vertices.
-    std::vector<Puncture> punctures;            // Those opened.
+    std::vector<CriticalPoint> critical_points;  // Its vertices, where cylinders are rings.
+    std::optional<std::array<int, 4>> corners;   // Disk: those used, mesh vertices.
+    std::vector<Puncture> punctures;             // Those opened.
     double energy = 0.0;
     int iterations = 0;
     CellSpread spread;
