@@ -390,9 +390,7 @@ void JunctionCounter::check_fixed(const JunctionCounts& counts) const {
     // With rows fixed the colours may not come out even.
     std::vector<ParityCost> costs(network_.ends.size(), {0.0, 0.0});
     for (const int c : network_.cylinders) {
-        if (wish_.counts[at(c)].rows) {
-            costs[at(c)][at(1 - counts.rows[at(c)] % 2)] = kForbidden;
-        }
+        costs[at(c)][at(1 - counts.rows[at(c)] % 2)] = kForbidden;
     }
     const auto parities =
         choose_row_parities(network_, colour_ends(network_, counts.arc_cells), counts.twist, costs);
