@@ -30,6 +30,11 @@ constexpr double kShortest = 0.3;
 // Of fixed columns against lengths of arcs.
 constexpr double kFixedWeight = 1e3;
 constexpr double kForbidden = 1e9;
+// What an arc that is a cell too long or short slants near it, against a cylinder as long as it is
+// wide that is twisted by a cell.
+constexpr double kArcSlant = 0.25;
+// Cylinders flatter than this have too little area to rule the rest by their twist.
+constexpr double kFlattest = 0.05;
 constexpr int kMostRowChanges = 1000;
 
 std::size_t at(int index) {
@@ -74,6 +79,29 @@ double mean_offset(const CylinderEnd& end, const std::vector<double>& columns) {
         sum += 0.5 * (here + next) * (end.g[i + 1] - end.g[i]);
     }
     return sum / period;
+}
+
+// How many cells a leaf of F* is off at the upper end, for each cell on each arc: the twist that a
+// cylinder wants is a sum of these.
+Eigen::RowVectorXd twist_form(const std::array<CylinderEnd, 2>& ends, std::size_t arcs) {
+    Eigen::RowVectorXd form = Eigen::RowVectorXd::Zero(static_cast<Index>(arcs));
+    for (std::size_t a = 0; a < arcs; ++a) {
+        std::vector<int> one(arcs, 0);
+        one[a] = 1;
+        for (std::size_t side = 0; side < 2; ++side) {
+            const auto& uses = ends[side].uses;
+            if (std::any_of(uses.begin(), uses.end(),
+                            [&](const ArcUse& use) { return at(use.arc) == a; })) {
+                const double offset = mean_offset(ends[side], column_positions(ends[side], one));
+                form[static_cast<Index>(a)] += side == 0 ? offset : -offset;
+            }
+        }
+    }
+    return form;
+}
+
+double arc_weight(double cells) {
+    return std::sqrt(std::max(kArcSlant, 1.0 / std::max(kShortest, cells)));
 }
 
 int sum_along(const CylinderEnd& end, const std::vector<int>& arc_cells) {
@@ -138,12 +166,14 @@ void JunctionCounter::set_wanted() {
     wanted_ = all && fixed_ ? sum : wanted_;
 }
 
-// Numbers: cells of each arc, then half the circumference of each cylinder if that is to be even.
+// Numbers: cells of each arc, then half the circumference of each cylinder if that is to be even,
+// then the twist of each. Costs are about the squared slants of cells, summed up.
 IntegerProgram JunctionCounter::make_program() const {
     const auto arcs = static_cast<Index>(network_.arcs.size());
     const auto rings = static_cast<Index>(network_.cylinders.size());
     const bool even = wish_.parity == Parity::Even;
-    const Index numbers = arcs + (even ? rings : 0);
+    const Index twists = arcs + (even ? rings : 0);
+    const Index numbers = twists + rings;
     const auto around = [&](int c, std::size_t end) {
         Eigen::RowVectorXi sum = Eigen::RowVectorXi::Zero(numbers);
         for (const ArcUse& use : network_.ends[at(c)][end].uses) {
@@ -156,17 +186,21 @@ IntegerProgram JunctionCounter::make_program() const {
     conditions.bounded = Eigen::MatrixXi::Zero(arcs + rings, numbers);
     conditions.bounded.topLeftCorner(arcs, arcs).setIdentity();
     conditions.lower_bound = Eigen::VectorXi::Ones(arcs + rings);
-    Eigen::MatrixXd forms = Eigen::MatrixXd::Zero(arcs + rings, numbers);
+    Eigen::MatrixXd forms = Eigen::MatrixXd::Zero(arcs + 2 * rings, numbers);
     const Eigen::VectorXd ideal = lengths(wanted_);
     for (Index a = 0; a < arcs; ++a) {
-        forms(a, a) = std::sqrt(1.0 / std::max(kShortest, ideal[a]));
+        forms(a, a) = arc_weight(ideal[a]);
     }
     for (Index r = 0; r < rings; ++r) {
         const int c = network_.cylinders[static_cast<std::size_t>(r)];
         const std::size_t known = network_.is_open(c, 0) ? 1 : 0;
         const Eigen::RowVectorXi circumference = around(c, known);
+        const Index twist = arcs + rings + r;
+        forms(twist, twists + r) = -1.0;
         if (known == 0 && !network_.is_open(c, 1)) {
             zero.emplace_back(circumference - around(c, 1));
+            forms.row(twist).head(arcs) = twist_form(network_.ends[at(c)], network_.arcs.size());
+            forms.row(twist) /= std::sqrt(std::max(kFlattest, aspect_[at(c)]));
         }
         if (even) {
             zero.push_back(circumference);
@@ -220,9 +254,9 @@ std::optional<JunctionCounter::Scored> JunctionCounter::try_size(double cells,
     const Eigen::VectorXd ideal = lengths(wanted_);
     const Eigen::VectorXd wished = lengths(cells * scale);
     Eigen::VectorXd targets =
-        Eigen::VectorXd::Zero(arcs + static_cast<Index>(network_.cylinders.size()));
+        Eigen::VectorXd::Zero(arcs + 2 * static_cast<Index>(network_.cylinders.size()));
     for (Index a = 0; a < arcs; ++a) {
-        targets[a] = wished[a] * std::sqrt(1.0 / std::max(kShortest, ideal[a]));
+        targets[a] = wished[a] * arc_weight(ideal[a]);
     }
     for (std::size_t r = 0; r < network_.cylinders.size(); ++r) {
         const RowsCols& counts = wish_.counts[at(network_.cylinders[r])];
@@ -240,9 +274,8 @@ std::optional<JunctionCounter::Scored> JunctionCounter::try_size(double cells,
     set_rows(counts, cells);
     found.score = strain(counts, cells);
     for (Index a = 0; a < arcs; ++a) {
-        const double cost = square(counts.arc_cells[static_cast<std::size_t>(a)] - wished[a]) /
-                            std::max(kShortest, wished[a]);
-        found.score += cost / wished.sum();
+        const double off = counts.arc_cells[static_cast<std::size_t>(a)] - wished[a];
+        found.score += square(off * arc_weight(wished[a])) / cells;
     }
     return found;
 }
@@ -337,7 +370,6 @@ void JunctionCounter::set_rows(JunctionCounts& counts, double cells) const {
         }
         counts.rows[at(best_cylinder)] = best_rows;
     }
-    strain(counts, cells);
     counts.cells = 0;
     double most = 0.0;
     for (const int c : network_.cylinders) {
@@ -355,17 +387,19 @@ void JunctionCounter::set_rows(JunctionCounts& counts, double cells) const {
 // The mean square of the cells' stretch and slant, and what the number of cells is off.
 double JunctionCounter::strain(const JunctionCounts& counts, double cells) const {
     double sum = 0.0;
+    double area = 0.0;
     double all = 0.0;
     for (const int c : network_.cylinders) {
         const double own = static_cast<double>(counts.rows[at(c)]) * counts.cols[at(c)];
         const double ideal = ideal_rows(counts, c);
-        sum += own *
+        sum += counts.cols[at(c)] * ideal *
                (square(std::log(counts.rows[at(c)] / ideal)) + square(counts.slip[at(c)] / ideal));
+        area += counts.cols[at(c)] * ideal;
         all += own;
     }
     const double off = std::abs(std::log(all / cells));
     const double beyond = std::max(0.0, off - kCountTolerance);
-    return sum / all + (fixed_ ? 0.0 : square(off) + kCountWeight * square(beyond));
+    return sum / area + (fixed_ ? 0.0 : square(off) + kCountWeight * square(beyond));
 }
 
 void JunctionCounter::check_fixed(const JunctionCounts& counts) const {
