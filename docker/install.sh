@@ -7,10 +7,10 @@
 # Says what it installs and leaves alone what is already there.
 set -eu
 
-RUN_PACKAGES="libopenmesh1 libcholmod3 libopenblas0-serial libcpp-httplib0.11 libspdlog1.10 libfmt9
+RUN_PACKAGES="libopenmesh1 libcholmod3 libopenblas0-pthread libcpp-httplib0.11 libspdlog1.10 libfmt9
     libsqlite3-0 libtomlplusplus3 libpolyclipping22 libssl3 zlib1g"
 BUILD_PACKAGES="g++ cmake ninja-build make pkg-config ccache git ca-certificates
-    libopenmesh-dev libeigen3-dev libsuitesparse-dev libopenblas-serial-dev
+    libopenmesh-dev libeigen3-dev libsuitesparse-dev libopenblas-pthread-dev
     nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev
     libcpp-httplib-dev libssl-dev zlib1g-dev libbrotli-dev
     libsqlite3-dev libsqlitecpp-dev libsodium-dev libusb-1.0-0-dev libpolyclipping-dev

@@ -112,6 +112,7 @@ Layout nest_families(std::span<const Piece> pieces,
         batches[shared || piece.family == Family::Weft ? 0 : 1].pieces.push_back(&piece);
     }
     Layout whole;
+    double done = 0.0;
     for (const Batch& batch : batches) {
         if (batch.pieces.empty()) {
             continue;
@@ -119,7 +120,12 @@ Layout nest_families(std::span<const Piece> pieces,
         const double share =
             static_cast<double>(batch.pieces.size()) / static_cast<double>(pieces.size());
         const NestOptions options = nest_options(params, batch, share);
-        append(whole, nest(batch.pieces, batch.material.sheets.front(), options, context), batch);
+        geometry::Context part = context;
+        part.progress = [&](std::string_view stage, double fraction) {
+            context.report(stage, done + share * fraction);
+        };
+        append(whole, nest(batch.pieces, batch.material.sheets.front(), options, part), batch);
+        done += share;
         context.check();  // A stopped search returns its best so far; here a stop is a stop.
     }
     whole.density_percent = density_percent(whole, pieces);

@@ -131,10 +131,10 @@ void append_part(Foliation& whole, Foliation part, const std::string& name) {
         }
     }
     for (Alternative& alternative : part.alternatives) {
-        alternative.name = name + alternative.name;
+        alternative.name.insert(0, name);
     }
     for (std::string& warning : part.warnings) {
-        warning = name + warning;
+        warning.insert(0, name);
     }
     append(whole.cylinders, part.cylinders);
     append(whole.singularities, part.singularities);

@@ -175,11 +175,13 @@ struct Foliation {
     std::vector<std::string> warnings;
 };
 
-// Computes the foliations of a connected surface.
+// Computes the foliations of an orientable surface, of each of its connected parts for itself.
 //
-// Guarantees: no triangle of any chart is flipped or degenerate in (g, f).
-// Throws Error(NotSupported) for a sphere, Error(BadOption) for corners that are not four different
-// vertices of the one boundary loop, and Error(SelfCheck) where a result fails its check.
+// Guarantees: no triangle of any chart is flipped or degenerate in (g, f); the charts' area on the
+// surface is that of the surface without the holes opened; singular points add up to what its Euler
+// characteristic asks for.
+// Throws Error(BadOption) for options that don't fit the surface, Error(BadMesh) for surfaces
+// without room for a chart, and Error(SelfCheck) naming the stage where a result fails its check.
 Foliation compute_foliation(const Mesh& mesh,
                             const FoliationOptions& options = {},
                             const Context& context = {});

@@ -74,4 +74,14 @@ HalfEdges build_half_edges(std::span<const std::array<int, 3>> triangles, int ve
     return edges;
 }
 
+std::vector<std::array<int, 3>> triangles_of(const HalfEdges& edges) {
+    std::vector<std::array<int, 3>> triangles(edges.from.size() / 3);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            triangles[t][k] = edges.from[3 * t + k];
+        }
+    }
+    return triangles;
+}
+
 }  // namespace leafcutter::geometry

@@ -35,4 +35,7 @@ struct HalfEdges {
 // disagree in orientation.
 HalfEdges build_half_edges(std::span<const std::array<int, 3>> triangles, int vertex_count);
 
+// The triangles that the half-edges go round.
+std::vector<std::array<int, 3>> triangles_of(const HalfEdges& edges);
+
 }  // namespace leafcutter::geometry

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <Eigen/SparseCholesky>
@@ -12,6 +13,12 @@
 
 #ifdef LEAFCUTTER_HAVE_CHOLMOD
 #include <cholmod.h>
+
+// CHOLMOD's dense kernels come from whatever BLAS is installed; these are there if it is OpenBLAS.
+extern "C" {
+[[gnu::weak]] void openblas_set_num_threads(int count);
+[[gnu::weak]] char* openblas_get_config();
+}
 #endif
 
 namespace leafcutter::geometry {
@@ -86,6 +93,23 @@ private:
 
 #ifdef LEAFCUTTER_HAVE_CHOLMOD
 
+// OpenBLAS without threads takes no care of callers that have some: their results would differ from
+// run to run. One with threads would start its own beside ours, which gains nothing here.
+bool blas_may_be_shared() {
+    static const bool safe = [] {
+        if (openblas_set_num_threads != nullptr) {
+            openblas_set_num_threads(1);
+        }
+        if (openblas_get_config == nullptr) {
+            return true;
+        }
+        const std::string_view config(openblas_get_config());
+        return config.find("SINGLE_THREADED") == std::string_view::npos ||
+               config.find("USE_LOCKING") != std::string_view::npos;
+    }();
+    return safe;
+}
+
 class CholmodBackend final : public SparseSolver::Backend {
 public:
     explicit CholmodBackend(const MatrixView& lower)
@@ -97,6 +121,7 @@ public:
         common_.nmethods = 1;
         common_.method[0].ordering = CHOLMOD_AMD;
         common_.postorder = 1;
+        common_.supernodal = blas_may_be_shared() ? CHOLMOD_AUTO : CHOLMOD_SIMPLICIAL;
         common_.final_ll = 1;  // LL' stops at a pivot <= 0, LDL' would go on.
         cholmod_sparse view = cholmod_view_of(lower);
         factor_ = cholmod_analyze(&view, &common_);

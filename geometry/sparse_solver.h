@@ -34,7 +34,7 @@ enum class Factorization {
 bool is_available(Factorization factorization);
 Factorization default_factorization();  // Cholmod where available.
 
-// The factor of one matrix. Not for use from two threads at once.
+// The factor of one matrix. One object is not for use from two threads at once, several are.
 class SparseSolver {
 public:
     // Throws Error(SelfCheck, "singular-system") if the matrix isn't positive definite or not

@@ -8,6 +8,14 @@
 
 namespace leafcutter::fab {
 
+namespace {
+
+Eigen::Vector2f point(double x, double y) {
+    return {static_cast<float>(x), static_cast<float>(y)};
+}
+
+}  // namespace
+
 Board::Board(const BoardPlan& plan)
     : plan_(plan),
       at_(plan.part_of.size()),
@@ -165,9 +173,8 @@ float Board::loss_at(std::size_t item,
                      float bound) const {
     ++evaluations_;
     const Shelf& shelf = shelves_[static_cast<std::size_t>(position.bin)];
-    float total = sheet_loss(shape, static_cast<float>(position.x), static_cast<float>(position.y),
-                             static_cast<float>(width_of(position.bin)),
-                             static_cast<float>(height_of(position.bin)));
+    float total = sheet_loss(shape, point(position.x, position.y),
+                             point(width_of(position.bin), height_of(position.bin)));
     if (total > 0.0F) {
         total *= weight(item, edge_column());
     }
@@ -197,8 +204,7 @@ std::vector<Clash> Board::clashes() const {
         const Position& at = at_[item];
         const TurnedPart& part = shape(item);
         const float edge =
-            sheet_loss(part, static_cast<float>(at.x), static_cast<float>(at.y),
-                       static_cast<float>(width_of(at.bin)), static_cast<float>(height_of(at.bin)));
+            sheet_loss(part, point(at.x, at.y), point(width_of(at.bin), height_of(at.bin)));
         if (edge > 0.0F) {
             found.push_back({item, edge_column(), edge});
         }

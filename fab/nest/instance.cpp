@@ -9,6 +9,7 @@
 
 #include "fab/nest/exact.h"
 #include "fab/nest/grow.h"
+#include "fab/nest/heap_start.h"
 #include "fab/nest/simple_ring.h"
 #include "geometry/error.h"
 
@@ -289,6 +290,107 @@ void leave_out_unplaced(Problem& problem, Packing& packing, InstanceSolution& so
     problem.plan.part_of.resize(kept);
 }
 
+// Whether most parts are long bands that turn freely: those stack well in heaps.
+bool is_banded(const BoardPlan& plan) {
+    std::size_t bands = 0;
+    for (const std::size_t part : plan.part_of) {
+        const Part& p = plan.parts[part];
+        bands += p.turns_freely() && p.diameter > 6.0 * p.width ? 1 : 0;
+    }
+    return 2 * bands > plan.part_of.size();
+}
+
+// Whether each part fits between the edges of an endless strip.
+bool all_fit(const BoardPlan& plan) {
+    const BoardPlan::Room& room = plan.rooms.front();
+    return std::all_of(plan.parts.begin(), plan.parts.end(), [&](const Part& part) {
+        return fitting_angle(make_shape(part.outline), {room.width, room.height}, part.allowed_deg)
+            .has_value();
+    });
+}
+
+// Heaps on sheets as wide as a strip is searched at once: a raster of an endless strip would be
+// coarse, and a search that moves everything at once would get nowhere.
+Packing banded_layout(BoardPlan& plan,
+                      const CompactionOptions& options,
+                      const geometry::Context& context) {
+    const BoardPlan::Room endless = plan.rooms.front();
+    double area = 0.0;
+    double longest = 0.0;
+    for (const std::size_t part : plan.part_of) {
+        area += plan.parts[part].area;
+        longest = std::max(longest, plan.parts[part].diameter);
+    }
+    const double wanted =
+        std::max(1.5 * longest, std::min(3.0 * area / endless.height, 2.0 * endless.height));
+    plan.rooms.front().width = std::min(endless.width, wanted);
+    Packing packing = heap_start(plan, 1, options.seed, context).packing;
+    plan.rooms.assign(static_cast<std::size_t>(packing.extent.bins), plan.rooms.front());
+    return packing;
+}
+
+// One behind the other, what lay on sheets of their own.
+Packing in_a_row(const std::vector<Packing>& stretches,
+                 const std::vector<std::vector<std::size_t>>& items) {
+    Packing whole;
+    for (std::size_t k = 0; k < stretches.size(); ++k) {
+        for (std::size_t i = 0; i < items[k].size(); ++i) {
+            const std::size_t item = items[k][i];
+            whole.positions.resize(std::max(whole.positions.size(), item + 1));
+            Position& at = whole.positions[item];
+            at = stretches[k].positions[i];
+            at.bin = 0;
+            at.x += whole.extent.last_width;
+        }
+        whole.extent.last_width += stretches[k].extent.last_width;
+        whole.evaluations += stretches[k].evaluations;
+    }
+    return whole;
+}
+
+// A strip in stretches that are searched one by one, each with its share of the work.
+Packing compact_stretches(const BoardPlan& plan,
+                          const Packing& start,
+                          const CompactionOptions& options,
+                          const geometry::Context& context,
+                          const std::function<bool(const Packing&)>& accept) {
+    const auto count = static_cast<std::size_t>(start.extent.bins);
+    std::vector<std::vector<std::size_t>> items(count);
+    for (std::size_t item = 0; item < start.positions.size(); ++item) {
+        items[static_cast<std::size_t>(start.positions[item].bin)].push_back(item);
+    }
+    std::vector<Packing> stretches(count);
+    std::vector<BoardPlan> plans(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        plans[k].rooms = {plan.rooms[k]};
+        for (const std::size_t item : items[k]) {
+            plans[k].part_of.push_back(plans[k].parts.size());
+            plans[k].parts.push_back(plan.part(item));
+            plans[k].turned.push_back(plan.turned[plan.part_of[item]]);
+            stretches[k].positions.push_back(start.positions[item]);
+            stretches[k].positions.back().bin = 0;
+        }
+        stretches[k].extent = {1, k + 1 == count ? start.extent.last_width : plan.rooms[k].width};
+    }
+    accept(in_a_row(stretches, items));
+    CompactionOptions share = options;
+    share.max_evaluations = options.max_evaluations / start.extent.bins;
+    share.time_s = options.time_s / start.extent.bins;
+    for (std::size_t k = 0; k < count && !context.stop.stop_requested(); ++k) {
+        geometry::Context part = context;
+        part.progress = [&](std::string_view stage, double fraction) {
+            context.report(stage, (static_cast<double>(k) + fraction) / static_cast<double>(count));
+        };
+        const Packing before = stretches[k];
+        stretches[k] =
+            compact(plans[k], stretches[k], share, part, [](const Packing&) { return true; });
+        if (!accept(in_a_row(stretches, items))) {
+            stretches[k] = before;
+        }
+    }
+    return in_a_row(stretches, items);
+}
+
 }  // namespace
 
 InstanceSolution solve(const NestInstance& instance,
@@ -297,14 +399,15 @@ InstanceSolution solve(const NestInstance& instance,
                        const std::function<void(const InstanceSolution&)>& improved) {
     check_instance(instance);
     Problem problem = make_problem(instance);
-    Packing packing = first_packing(problem.plan, options.seed, context);
+    const bool banded = instance.bins.empty() && is_banded(problem.plan) && all_fit(problem.plan);
+    Packing packing = banded ? banded_layout(problem.plan, options, context)
+                             : first_packing(problem.plan, options.seed, context);
     InstanceSolution none;
     leave_out_unplaced(problem, packing, none);
     if (packing.positions.empty()) {
         return none;
     }
-    InstanceSolution best = solution_of(problem, packing);
-    best.unplaced = none.unplaced;
+    InstanceSolution best;
     const auto accept = [&](const Packing& better) {
         try {
             InstanceSolution solution = solution_of(problem, better);
@@ -318,11 +421,20 @@ InstanceSolution solve(const NestInstance& instance,
         }
         return true;
     };
-    if (improved) {
-        improved(best);
+    const auto prove_first = [&] {
+        if (!accept(packing)) {
+            throw geometry::Error(geometry::ErrorKind::SelfCheck, "nest-proof",
+                                  "nest: the first layout is not sound");
+        }
+    };
+    Packing found;
+    if (banded && packing.extent.bins > 1) {
+        found = compact_stretches(problem.plan, packing, options, context, accept);
+    } else {
+        prove_first();
+        found = compact(problem.plan, packing, options, context, accept);
     }
-    best.evaluations =
-        compact(problem.plan, std::move(packing), options, context, accept).evaluations;
+    best.evaluations = found.evaluations;
     return best;
 }
 

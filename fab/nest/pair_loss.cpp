@@ -15,6 +15,10 @@ namespace {
 
 constexpr std::size_t kLanes = TurnedPart::kLanes;
 
+// Of bands: the width of the smooth tail, and the price of crossing, in widths.
+constexpr float kBandTail = 0.1F;
+constexpr float kCrossing = 0.5F;
+
 #if defined(__GNUC__)
 #define LEAFCUTTER_INLINE inline __attribute__((always_inline))
 #else
@@ -29,28 +33,52 @@ LEAFCUTTER_INLINE bool any(const std::array<std::int32_t, kLanes>& lanes) {
     return hit != 0;
 }
 
+// Whether a group of circles of `a` may touch one of `b`; `reach` apart counts as near.
+LEAFCUTTER_INLINE bool groups_near(const TurnedPart& a,
+                                   std::size_t i,
+                                   const TurnedPart& b,
+                                   std::size_t j,
+                                   const std::array<float, 3>& shift_and_reach) {
+    const auto [dx, dy, reach] = shift_and_reach;
+    return a.group_x0[i] + dx - reach <= b.group_x1[j] &&
+           a.group_x1[i] + dx + reach >= b.group_x0[j] &&
+           a.group_y0[i] + dy - reach <= b.group_y1[j] &&
+           a.group_y1[i] + dy + reach >= b.group_y0[j];
+}
+
+// `circle`: centre and radius.
+LEAFCUTTER_INLINE bool circle_touches(const TurnedPart& b,
+                                      std::size_t first,
+                                      const std::array<float, 3>& circle) {
+    const auto [x, y, r] = circle;
+    const float* bx = b.circle_x.data() + first;
+    const float* by = b.circle_y.data() + first;
+    const float* br = b.circle_r.data() + first;
+    std::array<std::int32_t, kLanes> hit{};
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        const float ex = bx[k] - x;
+        const float ey = by[k] - y;
+        const float reach = br[k] + r;
+        hit[k] = ex * ex + ey * ey < reach * reach ? 1 : 0;
+    }
+    return any(hit);
+}
+
 LEAFCUTTER_INLINE bool circles_touch(const TurnedPart& a, const TurnedPart& b, float dx, float dy) {
-    const float* bx = b.circle_x.data();
-    const float* by = b.circle_y.data();
-    const float* br = b.circle_r.data();
-    const float* ax = a.circle_x.data();
-    const float* ay = a.circle_y.data();
-    const float* ar = a.circle_r.data();
-    for (std::size_t i = 0; i < a.circles; ++i) {
-        const float x = ax[i] + dx;
-        const float y = ay[i] + dy;
-        const float r = ar[i];
-        std::array<std::int32_t, kLanes> hit{};
-        for (std::size_t j = 0; j < b.circles; j += kLanes) {
-            for (std::size_t k = 0; k < kLanes; ++k) {
-                const float ex = bx[j + k] - x;
-                const float ey = by[j + k] - y;
-                const float reach = br[j + k] + r;
-                hit[k] |= ex * ex + ey * ey < reach * reach ? 1 : 0;
+    const std::size_t a_groups = a.group_x0.size();
+    const std::size_t b_groups = b.group_x0.size();
+    for (std::size_t i = 0; i < a_groups; ++i) {
+        for (std::size_t j = 0; j < b_groups; ++j) {
+            if (!groups_near(a, i, b, j, {dx, dy, 0.0F})) {
+                continue;
             }
-        }
-        if (any(hit)) {
-            return true;
+            const std::size_t last = std::min(a.circles, (i + 1) * kLanes);
+            for (std::size_t c = i * kLanes; c < last; ++c) {
+                if (circle_touches(b, j * kLanes,
+                                   {a.circle_x[c] + dx, a.circle_y[c] + dy, a.circle_r[c]})) {
+                    return true;
+                }
+            }
         }
     }
     return false;
@@ -120,32 +148,43 @@ LEAFCUTTER_INLINE bool blocks_meet(const TurnedPart& a,
     return false;
 }
 
-LEAFCUTTER_INLINE bool edges_meet(const TurnedPart& a, const TurnedPart& b, float dx, float dy) {
-    const float* b_x0 = b.block_x0.data();
-    const float* b_y0 = b.block_y0.data();
-    const float* b_x1 = b.block_x1.data();
-    const float* b_y1 = b.block_y1.data();
-    for (std::size_t block = 0; block < a.blocks; ++block) {
-        const float low_x = a.block_x0[block] + dx;
-        const float low_y = a.block_y0[block] + dy;
-        const float high_x = a.block_x1[block] + dx;
-        const float high_y = a.block_y1[block] + dy;
-        if (low_x > b.high_x || high_x < b.low_x || low_y > b.high_y || high_y < b.low_y) {
-            continue;
+// Whether an edge of block `block` of `a` meets one of the kLanes blocks of `b` from `first`.
+LEAFCUTTER_INLINE bool block_meets(const TurnedPart& a,
+                                   std::size_t block,
+                                   const TurnedPart& b,
+                                   std::size_t first,
+                                   const std::array<float, 2>& shift) {
+    const float* b_x0 = b.block_x0.data() + first;
+    const float* b_y0 = b.block_y0.data() + first;
+    const float* b_x1 = b.block_x1.data() + first;
+    const float* b_y1 = b.block_y1.data() + first;
+    const float low_x = a.block_x0[block] + shift[0];
+    const float low_y = a.block_y0[block] + shift[1];
+    const float high_x = a.block_x1[block] + shift[0];
+    const float high_y = a.block_y1[block] + shift[1];
+    std::array<std::int32_t, kLanes> near{};
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        near[k] = (b_x0[k] <= high_x ? 1 : 0) & (b_x1[k] >= low_x ? 1 : 0) &
+                  (b_y0[k] <= high_y ? 1 : 0) & (b_y1[k] >= low_y ? 1 : 0);
+    }
+    if (!any(near)) {
+        return false;
+    }
+    for (std::size_t k = 0; k < kLanes && first + k < b.blocks; ++k) {
+        if (near[k] != 0 && blocks_meet(a, block, b, first + k, shift)) {
+            return true;
         }
-        for (std::size_t first = 0; first < b.blocks; first += kLanes) {
-            std::array<std::int32_t, kLanes> near{};
-            for (std::size_t k = 0; k < kLanes; ++k) {
-                near[k] = (b_x0[first + k] <= high_x ? 1 : 0) & (b_x1[first + k] >= low_x ? 1 : 0) &
-                          (b_y0[first + k] <= high_y ? 1 : 0) & (b_y1[first + k] >= low_y ? 1 : 0);
-            }
-            if (!any(near)) {
-                continue;
-            }
-            for (std::size_t k = 0; k < kLanes && first + k < b.blocks; ++k) {
-                if (near[k] != 0 && blocks_meet(a, block, b, first + k, {dx, dy})) {
-                    return true;
-                }
+    }
+    return false;
+}
+
+LEAFCUTTER_INLINE bool edges_meet(const TurnedPart& a, const TurnedPart& b, float dx, float dy) {
+    for (std::size_t block = 0; block < a.blocks; ++block) {
+        const bool far = a.block_x0[block] + dx > b.high_x || a.block_x1[block] + dx < b.low_x ||
+                         a.block_y0[block] + dy > b.high_y || a.block_y1[block] + dy < b.low_y;
+        for (std::size_t first = 0; !far && first < b.blocks; first += kLanes) {
+            if (block_meets(a, block, b, first, {dx, dy})) {
+                return true;
             }
         }
     }
@@ -181,6 +220,65 @@ LEAFCUTTER_INLINE float circle_loss(const TurnedPart& a, const TurnedPart& b, fl
     return std::sqrt(std::numbers::pi_v<float> * sum + eps_square) * a.hull_root * b.hull_root;
 }
 
+// Adds up the overlaps of two groups of circles of bands.
+LEAFCUTTER_INLINE void add_band_groups(const TurnedPart& a,
+                                       const TurnedPart& b,
+                                       const std::array<std::size_t, 2>& groups,
+                                       const std::array<float, 2>& shift,
+                                       std::array<float, kLanes>& sums) {
+    const auto [i, j] = groups;
+    const float width = 0.5F * (a.width + b.width);
+    const float eps = kBandTail * width;
+    const float eps_square = eps * eps;
+    const float per_width = kCrossing / width;
+    const float* bx = b.circle_x.data() + j * kLanes;
+    const float* by = b.circle_y.data() + j * kLanes;
+    const float* br = b.circle_r.data() + j * kLanes;
+    const float* bu = b.along_x.data() + j * kLanes;
+    const float* bv = b.along_y.data() + j * kLanes;
+    const float* be = b.to_end.data() + j * kLanes;
+    const std::size_t last = std::min(a.circles, (i + 1) * kLanes);
+    for (std::size_t c = i * kLanes; c < last; ++c) {
+        const float x = a.circle_x[c] + shift[0];
+        const float y = a.circle_y[c] + shift[1];
+        const float r = a.circle_r[c];
+        const float u = a.along_x[c];
+        const float v = a.along_y[c];
+        const float to_end = a.to_end[c];
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            const float ex = bx[k] - x;
+            const float ey = by[k] - y;
+            const float depth = br[k] + r - std::sqrt(ex * ex + ey * ey);
+            const float tail = eps_square / (eps + eps - std::min(depth, eps));
+            const float smooth = depth >= eps ? depth : tail;
+            const float cosine = u * bu[k] + v * bv[k];
+            const float end = be[k] < to_end ? be[k] : to_end;
+            const float across = 1.0F + (1.0F - cosine * cosine) * end * per_width;
+            sums[k] += smooth * across * (br[k] < r ? br[k] : r);
+        }
+    }
+}
+
+// Between bands: where they cross, what counts is how far the nearest end is, since one must slide
+// off the other; where they lie side by side, how deep they overlap.
+LEAFCUTTER_INLINE float band_loss(const TurnedPart& a, const TurnedPart& b, float dx, float dy) {
+    const float width = 0.5F * (a.width + b.width);
+    const float eps = kBandTail * width;
+    std::array<float, kLanes> sums{};
+    for (std::size_t i = 0; i < a.group_x0.size(); ++i) {
+        for (std::size_t j = 0; j < b.group_x0.size(); ++j) {
+            if (groups_near(a, i, b, j, {dx, dy, width})) {
+                add_band_groups(a, b, {i, j}, {dx, dy}, sums);
+            }
+        }
+    }
+    float sum = 0.0F;
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        sum += sums[k];
+    }
+    return std::sqrt(std::numbers::pi_v<float> * sum + eps * eps) * a.hull_root * b.hull_root;
+}
+
 // Whether the point lies inside, by the number of edges to its right.
 bool holds_point(const TurnedPart& part, float x, float y) {
     bool inside = false;
@@ -209,7 +307,7 @@ bool nested(const TurnedPart& a, const TurnedPart& b, float dx, float dy) {
 
 LEAFCUTTER_INLINE float loss_of(const TurnedPart& a, const TurnedPart& b, float dx, float dy) {
     if (circles_touch(a, b, dx, dy) || edges_meet(a, b, dx, dy) || nested(a, b, dx, dy)) {
-        return circle_loss(a, b, dx, dy);
+        return a.band && b.band ? band_loss(a, b, dx, dy) : circle_loss(a, b, dx, dy);
     }
     return 0.0F;
 }
@@ -244,11 +342,13 @@ float pair_loss(const TurnedPart& a, const TurnedPart& b, float dx, float dy) {
     return loss(a, b, dx, dy);
 }
 
-float sheet_loss(const TurnedPart& part, float x, float y, float width, float height) {
-    const float low_x = part.low_x + x;
-    const float low_y = part.low_y + y;
-    const float high_x = part.high_x + x;
-    const float high_y = part.high_y + y;
+float sheet_loss(const TurnedPart& part, const Eigen::Vector2f& at, const Eigen::Vector2f& room) {
+    const float width = room.x();
+    const float height = room.y();
+    const float low_x = part.low_x + at.x();
+    const float low_y = part.low_y + at.y();
+    const float high_x = part.high_x + at.x();
+    const float high_y = part.high_y + at.y();
     if (low_x >= 0.0F && low_y >= 0.0F && high_x <= width && high_y <= height) {
         return 0.0F;
     }

@@ -11,7 +11,7 @@ namespace leafcutter::fab {
 // sum over pairs of inscribed circles. Same bits on every machine.
 float pair_loss(const TurnedPart& a, const TurnedPart& b, float dx, float dy);
 
-// 0 if the box of `part`, moved by (x, y), lies in [0, width] x [0, height].
-float sheet_loss(const TurnedPart& part, float x, float y, float width, float height);
+// 0 if the box of `part`, moved by `at`, lies in [0, room.x] x [0, room.y].
+float sheet_loss(const TurnedPart& part, const Eigen::Vector2f& at, const Eigen::Vector2f& room);
 
 }  // namespace leafcutter::fab

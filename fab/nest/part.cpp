@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include <Eigen/Cholesky>
+
 #include "fab/nest/collision.h"
 #include "fab/nest/grow.h"
 
@@ -13,6 +15,10 @@ namespace leafcutter::fab {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+
+constexpr std::size_t kMostCircles = 32;
+constexpr std::size_t kMostBandCircles = 48;
+constexpr double kBandSlenderness = 6.0;
 
 // Far outside of everything, yet its square is a float.
 constexpr float kNowhere = 1e15F;
@@ -40,12 +46,14 @@ double distance_to(const Ring& ring, const Eigen::Vector2d& point, Eigen::Vector
 Circle touching_circle(const Ring& ring,
                        const Eigen::Vector2d& foot,
                        const Eigen::Vector2d& inward,
-                       double largest) {
+                       double largest,
+                       Eigen::Vector2d& other) {
     constexpr int kMostSteps = 24;
     double radius = largest;
     Eigen::Vector2d nearest = foot;
     for (int step = 0; step < kMostSteps; ++step) {
         const double reached = distance_to(ring, foot + radius * inward, nearest);
+        other = step == 0 || reached < radius * (1.0 - 1e-4) ? nearest : other;
         if (reached >= radius * (1.0 - 1e-4)) {
             break;
         }
@@ -60,14 +68,43 @@ Circle touching_circle(const Ring& ring,
     return {centre, contains(ring, centre) ? distance_to(ring, centre, nearest) : 0.0};
 }
 
+// A circle, and where along the ring it touches: at its foot and across from it.
+struct Touch {
+    Circle circle;
+    double foot_at = 0.0;
+    double other_at = 0.0;
+};
+
+// How far along the ring its point nearest to `point` is.
+double place_on(const Ring& ring, const Eigen::Vector2d& point) {
+    double best = std::numeric_limits<double>::infinity();
+    double place = 0.0;
+    double walked = 0.0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Eigen::Vector2d along = ring[(i + 1) % ring.size()] - ring[i];
+        const double length = along.norm();
+        const double t =
+            length > 0.0 ? std::clamp((point - ring[i]).dot(along) / (length * length), 0.0, 1.0)
+                         : 0.0;
+        const double distance = (ring[i] + t * along - point).squaredNorm();
+        if (distance < best) {
+            best = distance;
+            place = walked + t * length;
+        }
+        walked += length;
+    }
+    return place;
+}
+
 // Circles that touch the ring, from feet spread evenly along it.
-std::vector<Circle> medial_circles(const Ring& ring, double largest) {
+std::vector<Touch> touching_circles(const Ring& ring, double largest) {
+    constexpr double kFeet = 240.0;
     double length = 0.0;
     for (std::size_t i = 0; i < ring.size(); ++i) {
         length += (ring[(i + 1) % ring.size()] - ring[i]).norm();
     }
-    const double step = length / 240.0;
-    std::vector<Circle> circles;
+    std::vector<Touch> touches;
+    double walked = 0.0;
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const Eigen::Vector2d along = ring[(i + 1) % ring.size()] - ring[i];
         const double edge = along.norm();
@@ -75,16 +112,19 @@ std::vector<Circle> medial_circles(const Ring& ring, double largest) {
             continue;
         }
         const Eigen::Vector2d inward(-along.y() / edge, along.x() / edge);
-        const int feet = std::max(1, static_cast<int>(std::ceil(edge / step)));
+        const int feet = std::max(1, static_cast<int>(std::ceil(edge * kFeet / length)));
         for (int k = 0; k < feet; ++k) {
-            const Eigen::Vector2d foot = ring[i] + along * (k + 0.5) / feet;
-            const Circle circle = touching_circle(ring, foot, inward, largest);
+            const double share = (k + 0.5) / feet;
+            const Eigen::Vector2d foot = ring[i] + along * share;
+            Eigen::Vector2d other = foot;
+            const Circle circle = touching_circle(ring, foot, inward, largest, other);
             if (circle.radius > 0.0) {
-                circles.push_back(circle);
+                touches.push_back({circle, walked + share * edge, place_on(ring, other)});
             }
         }
+        walked += edge;
     }
-    return circles;
+    return touches;
 }
 
 std::size_t padded(std::size_t count) {
@@ -132,6 +172,48 @@ void fill_blocks(TurnedPart& out) {
     }
 }
 
+// Turned by the angle of cosine `c` and sine `s`.
+void fill_circles(const Part& part, double c, double s, TurnedPart& out) {
+    const std::size_t count = part.circles.size();
+    const std::size_t size = padded(count);
+    out.circles = count;
+    out.band = part.is_band();
+    out.width = static_cast<float>(part.width);
+    out.circle_x.assign(size, kNowhere);
+    out.circle_y.assign(size, kNowhere);
+    for (auto* array : {&out.circle_r, &out.along_x, &out.along_y, &out.to_end}) {
+        array->assign(size, 0.0F);
+    }
+    for (auto* array : {&out.group_x0, &out.group_y0}) {
+        array->assign(size / TurnedPart::kLanes, kNowhere);
+    }
+    for (auto* array : {&out.group_x1, &out.group_y1}) {
+        array->assign(size / TurnedPart::kLanes, -kNowhere);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Vector2d& p = part.circles[i].centre;
+        const auto x = static_cast<float>(c * p.x() - s * p.y());
+        const auto y = static_cast<float>(s * p.x() + c * p.y());
+        const auto r = static_cast<float>(part.circles[i].radius);
+        out.circle_x[i] = x;
+        out.circle_y[i] = y;
+        out.circle_r[i] = r;
+        const std::size_t group = i / TurnedPart::kLanes;
+        out.group_x0[group] = std::min(out.group_x0[group], x - r);
+        out.group_y0[group] = std::min(out.group_y0[group], y - r);
+        out.group_x1[group] = std::max(out.group_x1[group], x + r);
+        out.group_y1[group] = std::max(out.group_y1[group], y + r);
+        if (out.band) {
+            const BandPoint& point = part.middle[i];
+            const double whole = part.middle.back().from_start + part.middle.front().from_start;
+            out.along_x[i] = static_cast<float>(c * point.along.x() - s * point.along.y());
+            out.along_y[i] = static_cast<float>(s * point.along.x() + c * point.along.y());
+            out.to_end[i] =
+                static_cast<float>(std::min(point.from_start, whole - point.from_start));
+        }
+    }
+}
+
 double largest_distance(const Ring& ring) {
     double square = 0.0;
     for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -142,11 +224,32 @@ double largest_distance(const Ring& ring) {
     return std::sqrt(square);
 }
 
+// The centre of the circle nearest to a band's middle line, by linear least squares (Kåsa, "A
+// circle fitting procedure and its error analysis", IEEE Trans. Instrum. Meas. 25, 1976); of nearly
+// straight bands, a point far to the side.
+Eigen::Vector2d bend_centre(const Part& part) {
+    Eigen::MatrixXd rows(part.middle.size(), 3);
+    Eigen::VectorXd squares(part.middle.size());
+    for (std::size_t i = 0; i < part.middle.size(); ++i) {
+        const Eigen::Vector2d& p = part.middle[i].circle.centre;
+        const auto row = static_cast<Eigen::Index>(i);
+        rows.row(row) << p.x(), p.y(), part.diameter;
+        squares[row] = p.squaredNorm();
+    }
+    const Eigen::Matrix3d normal = rows.transpose() * rows + 1e-6 * part.diameter * part.diameter *
+                                                                 Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d solution = normal.ldlt().solve(rows.transpose() * squares);
+    return 0.5 * solution.head<2>();
+}
+
 }  // namespace
 
 std::vector<Circle> inscribed_circles(const Ring& ring, std::size_t most) {
     const double area = std::abs(signed_area(ring));
-    std::vector<Circle> pool = medial_circles(ring, std::sqrt(area / std::numbers::pi) * 1.01);
+    std::vector<Circle> pool;
+    for (const Touch& touch : touching_circles(ring, std::sqrt(area / std::numbers::pi) * 1.01)) {
+        pool.push_back(touch.circle);
+    }
     std::vector<Circle> chosen;
     double covered = 0.0;
     const auto enough = [&] {
@@ -173,6 +276,53 @@ std::vector<Circle> inscribed_circles(const Ring& ring, std::size_t most) {
     return chosen;
 }
 
+std::vector<BandPoint> middle_line(const Ring& ring, std::size_t count) {
+    const double area = std::abs(signed_area(ring));
+    const std::vector<Touch> touches =
+        touching_circles(ring, std::sqrt(area / std::numbers::pi) * 1.01);
+    double length = 0.0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        length += (ring[(i + 1) % ring.size()] - ring[i]).norm();
+    }
+    // The feet of a circle lie opposite each other: as far from an end on either side. All agree on
+    // the sum of the two, twice where the end is, up to the way around.
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (const Touch& touch : touches) {
+        const double turn = 2.0 * std::numbers::pi * (touch.foot_at + touch.other_at) / length;
+        sum += Eigen::Vector2d(std::cos(turn), std::sin(turn));
+    }
+    const double end = std::atan2(sum.y(), sum.x()) / (2.0 * std::numbers::pi) * length / 2.0;
+    std::vector<BandPoint> middle;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double wanted = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+        const Touch* best = nullptr;
+        double score = -std::numeric_limits<double>::infinity();
+        for (const Touch& touch : touches) {
+            const double at = std::abs(std::remainder(touch.foot_at - end, length)) * 2.0 / length;
+            const double off = std::abs(at - wanted) * static_cast<double>(count);
+            const double here = touch.circle.radius * (1.0 - std::min(off, 10.0) * 0.5);
+            if (here > score) {
+                score = here;
+                best = &touch;
+            }
+        }
+        if (best != nullptr) {
+            BandPoint point;
+            point.circle = best->circle;
+            point.from_start = wanted * length / 2.0;
+            middle.push_back(point);
+        }
+    }
+    for (std::size_t k = 0; k < middle.size(); ++k) {
+        const Circle& before = middle[k > 0 ? k - 1 : k].circle;
+        const Circle& after = middle[k + 1 < middle.size() ? k + 1 : k].circle;
+        const Eigen::Vector2d chord = after.centre - before.centre;
+        middle[k].along =
+            chord.norm() > 0.0 ? Eigen::Vector2d(chord.normalized()) : Eigen::Vector2d::UnitX();
+    }
+    return middle;
+}
+
 Part make_part(const Ring& outline, double grow, std::vector<double> allowed_deg) {
     Part part;
     part.outline = grown(outline, grow);
@@ -186,8 +336,18 @@ Part make_part(const Ring& outline, double grow, std::vector<double> allowed_deg
     part.width = shape.width_mm;
     part.diameter = largest_distance(part.outline);
     part.hull_area = std::abs(signed_area(convex_hull(part.outline)));
-    constexpr std::size_t kMostCircles = 32;
-    part.circles = inscribed_circles(part.outline, kMostCircles);
+    if (part.diameter > kBandSlenderness * part.width) {
+        const double length = part.area / part.width;
+        const auto count = static_cast<std::size_t>(length / part.width);
+        part.middle =
+            middle_line(part.outline, std::clamp<std::size_t>(count, 8, kMostBandCircles));
+        for (const BandPoint& point : part.middle) {
+            part.circles.push_back(point.circle);
+        }
+        part.bend_centre = bend_centre(part);
+    } else {
+        part.circles = inscribed_circles(part.outline, kMostCircles);
+    }
     for (Circle& circle : part.circles) {
         circle.radius *= 1.0 - 1e-5;  // Two that touch must be two parts that overlap.
     }
@@ -217,28 +377,21 @@ void turn_part(const Part& part, double angle_deg, TurnedPart& out) {
     out.high_x = *std::max_element(x.begin(), x.end());
     out.low_y = *std::min_element(y.begin(), y.end());
     out.high_y = *std::max_element(y.begin(), y.end());
-    out.circles = part.circles.size();
-    out.circle_x.assign(padded(out.circles), kNowhere);
-    out.circle_y.assign(padded(out.circles), kNowhere);
-    out.circle_r.assign(padded(out.circles), 0.0F);
-    for (std::size_t i = 0; i < out.circles; ++i) {
-        const Eigen::Vector2d& p = part.circles[i].centre;
-        out.circle_x[i] = static_cast<float>(c * p.x() - s * p.y());
-        out.circle_y[i] = static_cast<float>(s * p.x() + c * p.y());
-        out.circle_r[i] = static_cast<float>(part.circles[i].radius);
-    }
+    fill_circles(part, c, s, out);
     out.diameter = static_cast<float>(part.diameter);
     out.hull_area = static_cast<float>(part.hull_area);
     out.hull_root = static_cast<float>(std::sqrt(std::sqrt(part.hull_area)));
 }
 
 void shift_part(TurnedPart& part, float dx, float dy) {
-    for (auto* array : {&part.x0, &part.x1, &part.block_x0, &part.block_x1, &part.circle_x}) {
+    for (auto* array : {&part.x0, &part.x1, &part.block_x0, &part.block_x1, &part.circle_x,
+                        &part.group_x0, &part.group_x1}) {
         for (float& x : *array) {
             x += dx;
         }
     }
-    for (auto* array : {&part.y0, &part.y1, &part.block_y0, &part.block_y1, &part.circle_y}) {
+    for (auto* array : {&part.y0, &part.y1, &part.block_y0, &part.block_y1, &part.circle_y,
+                        &part.group_y0, &part.group_y1}) {
         for (float& y : *array) {
             y += dy;
         }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace leafcutter::fab {
 
@@ -11,11 +12,28 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-struct Axis {
-    double x = 0.0;
-    double y = 0.0;
-    bool turn = false;
-};
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+BandPoint point_at(const Part& part, double along) {
+    const auto count = static_cast<double>(part.middle.size());
+    const double length = part.middle.back().from_start + part.middle.front().from_start;
+    const double place = along / length * count - 0.5;
+    const auto index = static_cast<std::size_t>(std::clamp(place + 0.5, 0.0, count - 1.0));
+    BandPoint point = part.middle[index];
+    point.circle.centre += (place - static_cast<double>(index)) * length / count * point.along;
+    return point;
+}
+
+// `position` turned by `by_deg` about a point of the part.
+void turn_about(const Eigen::Vector2d& pivot, double by_deg, Position& position) {
+    const double before = position.angle_deg * kDegree;
+    position.angle_deg = std::remainder(position.angle_deg + by_deg, 360.0);
+    const double after = position.angle_deg * kDegree;
+    position.x += (std::cos(before) - std::cos(after)) * pivot.x() -
+                  (std::sin(before) - std::sin(after)) * pivot.y();
+    position.y += (std::sin(before) - std::sin(after)) * pivot.x() +
+                  (std::cos(before) - std::cos(after)) * pivot.y();
+}
 
 // A part's smaller bounding side, by which steps are measured; of a bent band the band's width
 // counts, since its bounds are far larger than what it takes.
@@ -26,7 +44,7 @@ double step_unit(const Part& part, const TurnedPart& shape) {
 
 }  // namespace
 
-double PoseSearch::loss_of(std::size_t item, const Position& position, float bound) {
+float PoseSearch::loss_of(std::size_t item, const Position& position, float bound) {
     return board_.loss_at(item, board_.turned(item, position, scratch_), position, bound);
 }
 
@@ -82,6 +100,77 @@ void PoseSearch::sample_near(std::size_t item, const Position& around, Position&
     position.y += random_.between(-0.5, 0.5) * height;
 }
 
+// Alongside another band of the same sheet: a stretch of the item's middle line is laid onto the
+// other's, moved sideways by both halves of a width, as well as least squares can.
+bool PoseSearch::sample_mate(std::size_t item, Position& position) {
+    const std::size_t other = random_.below(board_.items());
+    const Part& a = board_.plan().part(item);
+    const Part& b = board_.plan().part(other);
+    if (other == item || !b.is_band()) {
+        return false;
+    }
+    const Position& there = board_.position(other);
+    const double a_length = a.middle.back().from_start + a.middle.front().from_start;
+    const double b_length = b.middle.back().from_start + b.middle.front().from_start;
+    const bool backwards = random_.below(2) == 1;
+    const double side = random_.below(2) == 1 ? 1.0 : -1.0;
+    // Where the item's start lies along the other; at least a third of the shorter one overlaps.
+    const double overlap = std::min(a_length, b_length) / 3.0;
+    const double start = random_.between(overlap - a_length, b_length - overlap);
+    const double from = std::max(0.0, start);
+    const double to = std::min(b_length, start + a_length);
+    constexpr int kPoints = 6;
+    Eigen::Matrix<double, 2, kPoints> source;
+    Eigen::Matrix<double, 2, kPoints> target;
+    for (int i = 0; i < kPoints; ++i) {
+        const double on_b = from + (to - from) * (i + 0.5) / kPoints;
+        const double on_a = backwards ? a_length - (on_b - start) : on_b - start;
+        const BandPoint p = point_at(a, on_a);
+        const BandPoint q = point_at(b, on_b);
+        source.col(i) = p.circle.centre;
+        target.col(i) = q.circle.centre + side * 1.02 * (p.circle.radius + q.circle.radius) *
+                                              Eigen::Vector2d(-q.along.y(), q.along.x());
+    }
+    const Eigen::Vector2d source_mean = source.rowwise().mean();
+    const Eigen::Vector2d target_mean = target.rowwise().mean();
+    source.colwise() -= source_mean;
+    target.colwise() -= target_mean;
+    const double dot = source.cwiseProduct(target).sum();
+    const double cross =
+        (source.row(0).cwiseProduct(target.row(1)) - source.row(1).cwiseProduct(target.row(0)))
+            .sum();
+    const double turn = std::atan2(cross, dot);
+    position.bin = there.bin;
+    position.turn = 0;
+    position.angle_deg = std::remainder(turn / kDegree + there.angle_deg, 360.0);
+    const double c = std::cos(there.angle_deg * kDegree);
+    const double s = std::sin(there.angle_deg * kDegree);
+    // The item's origin in the other's frame, then on the sheet.
+    const Eigen::Vector2d at =
+        target_mean -
+        Eigen::Vector2d(std::cos(turn) * source_mean.x() - std::sin(turn) * source_mean.y(),
+                        std::sin(turn) * source_mean.x() + std::cos(turn) * source_mean.y());
+    position.x = there.x + c * at.x() - s * at.y();
+    position.y = there.y + s * at.x() + c * at.y();
+    return true;
+}
+
+// About which a part turns: its origin, or else a point of a band, or the centre about which a
+// bent band slides along itself.
+Eigen::Vector2d PoseSearch::pivot(const Part& part) {
+    if (!part.is_band()) {
+        return Eigen::Vector2d::Zero();
+    }
+    switch (random_.below(3)) {
+        case 0:
+            return Eigen::Vector2d::Zero();
+        case 1:
+            return part.middle[random_.below(part.middle.size())].circle.centre;
+        default:
+            return part.bend_centre;
+    }
+}
+
 void PoseSearch::keep(const Candidate& candidate) {
     for (std::size_t i = 0; i < kept_count_; ++i) {
         const Position& a = kept_[i].position;
@@ -111,64 +200,63 @@ void PoseSearch::keep(const Candidate& candidate) {
 
 void PoseSearch::consider(std::size_t item, const Position& position) {
     const float bound = kept_count_ == kKept ? kept_[kKept - 1].loss : kInfinity;
-    const auto loss = static_cast<float>(loss_of(item, position, bound));
+    const auto loss = loss_of(item, position, bound);
     if (loss < bound) {
         keep({position, loss});
     }
 }
 
+PoseSearch::Axis PoseSearch::random_axis(const Part& part) {
+    static constexpr std::array<std::array<double, 2>, 4> kDirections{
+        {{1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}}};
+    if (part.turns_freely() && random_.below(3) == 0) {
+        return {0.0, 0.0, true, pivot(part)};
+    }
+    const auto& [x, y] = kDirections[random_.below(kDirections.size())];
+    return {x, y, false, Eigen::Vector2d::Zero()};
+}
+
 // Randomised coordinate descent; a step that fails shrinks, one that gains grows.
 void PoseSearch::descend(std::size_t item, Candidate& candidate, const Steps& steps) {
-    static constexpr std::array<Axis, 4> kAxes{{{1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}}};
-    const bool turns = board_.plan().part(item).turns_freely();
+    const Part& part = board_.plan().part(item);
     double step_x = steps.start;
     double step_y = steps.start;
-    double step_turn = steps.turn_start_deg;
-    const auto pick = [&]() -> Axis {
-        if (turns && random_.below(3) == 0) {
-            return {0.0, 0.0, true};
-        }
-        return kAxes[random_.below(kAxes.size())];
-    };
-    Axis axis = pick();
-    while (candidate.loss > 0.0F &&
-           (std::max(step_x, step_y) > steps.end || (turns && step_turn > steps.turn_end_deg))) {
-        Position ahead = candidate.position;
-        Position back = candidate.position;
-        ahead.x += axis.x * step_x;
-        ahead.y += axis.y * step_y;
-        back.x -= axis.x * step_x;
-        back.y -= axis.y * step_y;
+    double step_turn = part.turns_freely() ? steps.turn_start_deg : 0.0;
+    const auto step = [&](const Axis& axis, double sign) {
+        Position to = candidate.position;
+        to.x += sign * axis.x * step_x;
+        to.y += sign * axis.y * step_y;
         if (axis.turn) {
-            ahead.angle_deg = std::remainder(ahead.angle_deg + step_turn, 360.0);
-            back.angle_deg = std::remainder(back.angle_deg - step_turn, 360.0);
+            turn_about(axis.pivot, sign * step_turn, to);
         }
-        const auto ahead_loss = static_cast<float>(loss_of(item, ahead, candidate.loss));
+        return to;
+    };
+    Axis axis = random_axis(part);
+    while (candidate.loss > 0.0F &&
+           (std::max(step_x, step_y) > steps.end || step_turn > steps.turn_end_deg)) {
+        const Position ahead = step(axis, 1.0);
+        const Position back = step(axis, -1.0);
+        const float ahead_loss = loss_of(item, ahead, candidate.loss);
         const float bound = std::min(ahead_loss, candidate.loss);
-        const auto back_loss =
-            bound > 0.0F ? static_cast<float>(loss_of(item, back, bound)) : bound;
+        const float back_loss = bound > 0.0F ? loss_of(item, back, bound) : bound;
         const bool forward = ahead_loss <= back_loss;
-        const float loss = forward ? ahead_loss : back_loss;
-        const bool better = loss < candidate.loss;
+        const bool better = std::min(ahead_loss, back_loss) < candidate.loss;
         if (better) {
-            candidate = {forward ? ahead : back, loss};
+            candidate = {forward ? ahead : back, forward ? ahead_loss : back_loss};
         }
         const double factor = better ? 1.1 : 0.5;
-        if (axis.turn) {
-            step_turn *= factor;
-        } else if (axis.x != 0.0 && axis.y != 0.0) {
-            step_x *= std::sqrt(factor);
-            step_y *= std::sqrt(factor);
-        } else {
-            (axis.x != 0.0 ? step_x : step_y) *= factor;
-        }
-        axis = better ? axis : pick();
+        const double shared = axis.x != 0.0 && axis.y != 0.0 ? std::sqrt(factor) : factor;
+        step_turn *= axis.turn ? factor : 1.0;
+        step_x *= axis.x != 0.0 ? shared : 1.0;
+        step_y *= axis.y != 0.0 ? shared : 1.0;
+        axis = better ? axis : random_axis(part);
     }
 }
 
 Candidate PoseSearch::best_for(std::size_t item) {
     constexpr int kNear = 25;
     constexpr int kAnywhere = 50;
+    constexpr int kMates = 30;
     const Part& part = board_.plan().part(item);
     const Position now = board_.position(item);
     const double unit = step_unit(part, board_.shape(item));
@@ -185,6 +273,13 @@ Candidate PoseSearch::best_for(std::size_t item) {
         sample_near(item, now, position);
         consider(item, position);
     }
+    if (part.is_band() && part.turns_freely()) {
+        for (int i = 0; i < kMates; ++i) {
+            if (sample_mate(item, position)) {
+                consider(item, position);
+            }
+        }
+    }
     const Steps coarse{0.25 * unit, 0.02 * unit, 5.0, 1.0};
     for (std::size_t i = 0; i < kept_count_; ++i) {
         descend(item, kept_[i], coarse);
@@ -192,7 +287,7 @@ Candidate PoseSearch::best_for(std::size_t item) {
     Candidate best =
         *std::min_element(kept_, kept_ + kept_count_,
                           [](const Candidate& a, const Candidate& b) { return a.loss < b.loss; });
-    descend(item, best, {0.01 * unit, 0.001 * unit, 0.5, 0.05});
+    descend(item, best, {0.01 * unit, 0.0003 * unit, 0.5, 0.02});
     return best;
 }
 
@@ -209,7 +304,7 @@ Candidate PoseSearch::leftmost(std::size_t item, int samples) {
             continue;
         }
         const double at = score(position);
-        if (at < best_score && loss_of(item, position, kInfinity) <= 0.0) {
+        if (at < best_score && loss_of(item, position, kInfinity) <= 0.0F) {
             best = {position, 0.0F};
             best_score = at;
         }
@@ -220,13 +315,15 @@ Candidate PoseSearch::leftmost(std::size_t item, int samples) {
     // Pushed left and down as far as it goes.
     const double unit =
         step_unit(board_.plan().part(item), board_.turned(item, best.position, scratch_));
+    static constexpr std::array<std::array<double, 2>, 3> kLeftAndDown{
+        {{-1.0, 0.0}, {0.0, -1.0}, {-1.0, 1.0}}};
     for (double step = unit; step > 0.002 * unit;) {
         bool moved = false;
-        for (const Axis& axis : {Axis{-1.0, 0.0}, Axis{0.0, -1.0}, Axis{-1.0, 1.0}}) {
+        for (const auto& [ax, ay] : kLeftAndDown) {
             Position next = best.position;
-            next.x += axis.x * step;
-            next.y += axis.y * step;
-            if (loss_of(item, next, std::numeric_limits<float>::min()) <= 0.0) {
+            next.x += ax * step;
+            next.y += ay * step;
+            if (loss_of(item, next, std::numeric_limits<float>::min()) <= 0.0F) {
                 best.position = next;
                 moved = true;
             }

@@ -29,6 +29,13 @@ public:
 private:
     static constexpr std::size_t kKept = 3;
 
+    // A direction of a step; of a turn, the point about which.
+    struct Axis {
+        double x = 0.0;
+        double y = 0.0;
+        bool turn = false;
+        Eigen::Vector2d pivot = Eigen::Vector2d::Zero();
+    };
     struct Steps {
         double start = 0.0;
         double end = 0.0;
@@ -38,12 +45,14 @@ private:
 
     bool sample(std::size_t item, Position& position);
     void sample_near(std::size_t item, const Position& around, Position& position);
-    void sample_mates(std::size_t item);
+    bool sample_mate(std::size_t item, Position& position);
     void random_turn(const Part& part, Position& position);
+    Eigen::Vector2d pivot(const Part& part);
     void consider(std::size_t item, const Position& position);
     void keep(const Candidate& candidate);
+    Axis random_axis(const Part& part);
     void descend(std::size_t item, Candidate& candidate, const Steps& steps);
-    double loss_of(std::size_t item, const Position& position, float bound);
+    float loss_of(std::size_t item, const Position& position, float bound);
 
     const Board& board_;
     Random& random_;

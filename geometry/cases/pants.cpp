@@ -11,6 +11,7 @@
 
 #include "geometry/cases/annulus.h"
 #include "geometry/laplacian.h"
+#include "geometry/pants/coarse_maps.h"
 #include "geometry/pants/hierarchy.h"
 #include "geometry/pants/prepare_surface.h"
 #include "geometry/pants/slice.h"
@@ -38,7 +39,7 @@ constexpr double kNotableExcess = 0.1;
 constexpr double kImpossibleExcess = 1.0;
 constexpr double kAreaTolerance = 1e-6;
 // A cylinder with less of the surface has all but collapsed.
-constexpr double kSqueezedShare = 1e-4;
+constexpr double kSqueezedShare = 1e-6;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -115,7 +116,7 @@ void check_pieces(const Sliced& sliced, const TriangleMesh& mesh, int euler, int
 }
 
 Solved carry_up(const Hierarchy& hierarchy, const CoarseMap& coarse, const Context& context) {
-    FineMap fine = refine_map(hierarchy, coarse, context);
+    FineMap fine = refine_map(hierarchy, coarse.map, context);
     context.report("foliation", 0.5);
     Solved solved{std::move(fine.map), fine.report, hierarchy.levels.front().surface.mesh, {}};
     const int euler = static_cast<int>(solved.mesh.positions.size()) -

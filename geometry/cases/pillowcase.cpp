@@ -56,7 +56,10 @@ std::vector<Jump> edge_jumps(const std::vector<WeightedEdge>& edges, const JumpO
 }
 
 // Solves on the double cover of `surface`; the answer's map is the cover's.
-SolvedChart solve_on_cover(const ChartSurface& surface, const Points& points, CoverChart& chart) {
+SolvedChart solve_on_cover(const ChartSurface& surface,
+                           const Points& points,
+                           CoverChart& chart,
+                           const Context& context) {
     chart.surface = surface;
     chart.cover =
         branched_cover(surface.edges, static_cast<int>(surface.mesh.positions.size()), points);
@@ -65,11 +68,14 @@ SolvedChart solve_on_cover(const ChartSurface& surface, const Points& points, Co
     solved.map.mesh = cover_mesh(surface.mesh, chart.cover);
     solved.map.edges = chart.cover.edges;
     solved.map.gf.resize(chart.cover.vertex_below.size());
+    context.check();
     const IntrinsicTriangulation delaunay =
         intrinsic_delaunay(solved.map.mesh, solved.map.edges, paired(chart.cochains.jump));
+    context.check();
     const std::vector<WeightedEdge> edges = cotangent_edges(delaunay);
     const std::vector<Jump> jump = edge_jumps(edges, [&](int h) { return delaunay.jump[at(h)]; });
     const HarmonicForms forms = solve_odd_forms(chart.cover, chart.cochains, edges, jump);
+    context.check();
     const auto [rising, round] = shortest_classes(forms);
     chart.frame = lay_out_torus(solved, forms, {rising, round});
     solved.flux_mismatch = periodic_flux_variation(
@@ -205,7 +211,9 @@ Foliation foliate_pillowcase(const TriangleMesh& mesh,
     CoverChart chart;
     SolvedChart on_cover = solve_resolved(
         surface_for(mesh, points),
-        [&](const ChartSurface& surface) { return solve_on_cover(surface, points, chart); },
+        [&](const ChartSurface& surface) {
+            return solve_on_cover(surface, points, chart, context);
+        },
         options.refinement, context);
     const FlipReport repair = make_odd_bijective(on_cover.map, chart, context);
     Foliation foliation = finish_pillow(std::move(on_cover), chart, points, context);

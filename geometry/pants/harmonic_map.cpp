@@ -15,8 +15,12 @@ constexpr int kColdSweeps = 8;
 constexpr int kWarmSweeps = 1;
 constexpr int kRescueSweeps = 5;
 constexpr int kHalvings = 8;
-// Two steps in a row that gain less than this part of the energy end the iteration.
-constexpr double kLeastGain = 1e-12;
+// A step that gains less than this part of the energy ends the iteration.
+constexpr double kLeastGain = 1e-11;
+// Blocked vertices may free themselves in the next steps; after so many they won't.
+constexpr int kQuietIfBlocked = 4;
+constexpr double kDraftGain = 1e-4;
+constexpr int kDraftIterations = 15;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -36,32 +40,40 @@ public:
           system_(rings, weights, map.t.size()),
           standing_(map.t.size(), Standing::Free) {}
 
-    HarmonicMapReport run(int first_sweeps) {
-        for (int sweep = 0; sweep < first_sweeps; ++sweep) {
+    HarmonicMapReport run(const MapOptions& options) {
+        const bool draft = options.accuracy == MapAccuracy::Draft;
+        const int most_iterations = draft ? kDraftIterations : kMostIterations;
+        const double least_gain = draft ? kDraftGain : kLeastGain;
+        const int sweeps = options.start == MapStart::Cold ? kColdSweeps : kWarmSweeps;
+        for (int sweep = 0; sweep < sweeps; ++sweep) {
             sweep_all();
         }
         HarmonicMapReport report;
-        report.energy = energy();
+        report.energies.push_back(energy());
         int quiet = 0;
-        while (report.iterations < kMostIterations && quiet < 2) {
+        while (report.iterations < most_iterations && !report.converged) {
             context_.check();
-            const double before = report.energy;
+            const double before = report.energies.back();
             newton_step(before);
-            report.energy = energy();
+            report.energies.push_back(energy());
             ++report.iterations;
-            const bool blocked =
-                std::count(standing_.begin(), standing_.end(), Standing::Blocked) > 0;
-            quiet = before - report.energy < kLeastGain * before && !blocked ? quiet + 1 : 0;
+            const bool small = before - report.energies.back() < least_gain * before;
+            quiet = small ? quiet + 1 : 0;
+            report.converged = small && (draft || !any_blocked() || quiet >= kQuietIfBlocked);
         }
-        report.converged = quiet >= 2;
+        report.energy = report.energies.back();
         report.factorizations = system_.factorizations();
         report.solves = system_.solves();
-        report.residual = residual();
+        report.residual = draft ? 0.0 : residual();
         return report;
     }
 
 private:
     double energy() const { return map_energy(map_, rings_, weights_); }
+
+    bool any_blocked() const {
+        return std::find(standing_.begin(), standing_.end(), Standing::Blocked) != standing_.end();
+    }
 
     void settle(int v) {
         if (map_.fixed[at(v)] == 0) {
@@ -253,10 +265,9 @@ double map_energy(const GraphMap& map, const VertexRings& rings, std::span<const
 HarmonicMapReport solve_harmonic_map(GraphMap& map,
                                      const VertexRings& rings,
                                      std::span<const double> weights,
-                                     MapStart start,
+                                     const MapOptions& options,
                                      const Context& context) {
-    return Solver(map, rings, weights, context)
-        .run(start == MapStart::Cold ? kColdSweeps : kWarmSweeps);
+    return Solver(map, rings, weights, context).run(options);
 }
 
 void settle_vertices(GraphMap& map,

@@ -19,6 +19,17 @@ namespace leafcutter::geometry {
 // carried to a finer surface.
 enum class MapStart { Cold, Warm };
 
+// Draft: near enough to compare maps by, about four digits of the energy. Full: to rounding.
+enum class MapAccuracy { Draft, Full };
+
+struct MapOptions {
+    MapOptions(MapStart map_start,  // NOLINT(google-explicit-constructor): the usual choice alone.
+               MapAccuracy map_accuracy = MapAccuracy::Full)
+        : start(map_start), accuracy(map_accuracy) {}
+    MapStart start;
+    MapAccuracy accuracy;
+};
+
 struct HarmonicMapReport {
     double energy = 0.0;  // 1/2 sum of weight x distance squared.
     int iterations = 0;   // Newton steps.
@@ -27,6 +38,7 @@ struct HarmonicMapReport {
     double residual =
         0.0;  // Largest move of a vertex in one more sweep, by the largest graph edge.
     bool converged = false;
+    std::vector<double> energies;  // Before the first Newton step and after each; never rising.
 };
 
 // 1/2 sum of weight x distance squared.
@@ -36,7 +48,7 @@ double map_energy(const GraphMap& map, const VertexRings& rings, std::span<const
 HarmonicMapReport solve_harmonic_map(GraphMap& map,
                                      const VertexRings& rings,
                                      std::span<const double> weights,
-                                     MapStart start,
+                                     const MapOptions& options,
                                      const Context& context);
 
 // Puts the given vertices to their centres, all others held, forwards and backwards so many times.

@@ -5,11 +5,8 @@
 
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "geometry/cell_spread.h"
 #include "geometry/context.h"
 #include "geometry/pants/harmonic_map.h"
 #include "geometry/pants/level.h"
@@ -35,36 +32,12 @@ Hierarchy build_hierarchy(LinedSurface finest,
                           std::size_t coarsest,
                           const Context& context);
 
-// A map of the coarsest level, solved.
-struct CoarseMap {
-    std::string name;  // Of the function or loops, and of the rule for weights.
-    GraphMap map;
-    HarmonicMapReport report;
-    CellSpread spread;
-    double unevenness = 0.0;   // Root mean square of the logarithm of cell area, over the surface.
-    double loop_length = 0.0;  // Mean length of the leaves of F in all cylinders together.
-    double score = 0.0;        // Of both; less is better.
-};
-
-struct CoarseOptions {
-    PantsSource pants = PantsSource::Reeb;
-    SweepFunction function = SweepFunction::Auto;
-    std::optional<std::vector<double>> weights;
-    int attempt = 0;  // Later ones start elsewhere.
-};
-
-// All that could be solved, best first. With automatic weights each decomposition is tried with the
-// lengths of its parts and with equal weights.
-// Throws Error(BadOption) for weights of the wrong number, and as pants_candidates does.
-std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
-                                      const CoarseOptions& options,
-                                      const Context& context);
-
 struct FineMap {
     GraphMap map;  // On the finest level's own triangles.
     HarmonicMapReport report;
 };
 
-FineMap refine_map(const Hierarchy& hierarchy, const CoarseMap& coarse, const Context& context);
+// From a map of the coarsest level's flipped surface, near its minimum.
+FineMap refine_map(const Hierarchy& hierarchy, const GraphMap& coarse, const Context& context);
 
 }  // namespace leafcutter::geometry

@@ -23,15 +23,6 @@ Dart dart_of(const Word& word, std::size_t k, bool forward) {
     return forward ? word[k] : reversed(word[word.size() - 1 - k]);
 }
 
-bool contains_pair(const Word& word, Dart a, Dart b) {
-    for (std::size_t k = 0; k + 1 < word.size(); ++k) {
-        if (word[k] == a && word[k + 1] == b) {
-            return true;
-        }
-    }
-    return false;
-}
-
 }  // namespace
 
 LocalStep::LocalStep(GraphMap& map, const VertexRings& rings, std::span<const double> weights)
@@ -51,6 +42,7 @@ void LocalStep::look(int v) {
         const Word& word = map_.words[at(slot.edge)];
         Seen seen;
         seen.slot = k;
+        seen.darts = word.size();
         seen.weight = weights_[at(slot.edge)];
         if (word.empty()) {
             seen.place = map_.t[at(slot.neighbour)];
@@ -65,12 +57,10 @@ void LocalStep::look(int v) {
     }
 }
 
+// Two neighbours beyond the node are in different edges of the tree exactly if the path from one to
+// the other is what is left of their words beyond it, put together.
 bool LocalStep::same_leg(const Seen& a, const Seen& b, const RingSlot& slot) const {
-    if (slot.link < 0 || a.second != b.second) {
-        return false;
-    }
-    const Word& link = map_.words[at(slot.link)];
-    return !contains_pair(link, reversed(a.second), a.second);
+    return slot.link >= 0 && map_.words[at(slot.link)].size() + 2 != a.darts + b.darts;
 }
 
 // Numbers the legs beyond the end of `dart` and returns the number of separate runs of neighbours

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
@@ -47,7 +48,8 @@ private:
     struct Seen {  // A neighbour as seen from the vertex at hand.
         int slot = 0;
         double weight = 0.0;
-        Dart first = -1;  // First and second dart of its word, -1 without.
+        std::size_t darts = 0;  // Of its word.
+        Dart first = -1;        // First and second of them, -1 without.
         Dart second = -1;
         double place = 0.0;  // On the vertex's own edge line, unfolded.
         int leg = -1;        // Class of neighbours beyond the node, or -1.

@@ -138,7 +138,7 @@ ReebGraph build_reeb_graph(std::span<const std::array<int, 3>> triangles,
     std::vector<LimbAtSaddle> limbs;
     for (int round = 0;; ++round) {
         SweepMesh mesh =
-            make_sweep_mesh(triangles, values, boundary_loops, loop_is_low, limbs, turn);
+            make_sweep_mesh(triangles, values, boundary_loops, loop_is_low, {limbs, turn});
         ReebGraph graph = Sweep(mesh).run();
         graph.mesh = std::move(mesh);
         const std::vector<LimbAtSaddle> left = PantsGraph(graph).limbs_at_saddles();

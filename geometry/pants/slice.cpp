@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -80,11 +81,12 @@ public:
     const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
     std::vector<std::vector<Eigen::Vector3d>> curves() {
+        std::transform(neighbours_.begin(), neighbours_.end(), std::back_inserter(is_end_),
+                       [](const std::vector<int>& list) { return list.size() != 2; });
         std::vector<std::vector<Eigen::Vector3d>> curves;
         for (const bool from_ends : {true, false}) {
             for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
-                while (!neighbours_[at(p)].empty() &&
-                       (!from_ends || neighbours_[at(p)].size() != 2)) {
+                while (!neighbours_[at(p)].empty() && (!from_ends || is_end_[at(p)])) {
                     curves.push_back(follow(p));
                 }
             }
@@ -109,13 +111,14 @@ private:
             part(p, next);
             p = next;
             curve.push_back(points_[at(p)]);
-        } while (p != start && neighbours_[at(p)].size() == 1);
+        } while (p != start && !is_end_[at(p)]);
         return curve;
     }
 
     std::unordered_map<std::uint64_t, int> index_;
     std::vector<Eigen::Vector3d> points_;
     std::vector<std::vector<int>> neighbours_;
+    std::vector<bool> is_end_;  // Per point: a curve ends here.
 };
 
 class Slicer {

@@ -282,17 +282,16 @@ SweepMesh make_sweep_mesh(std::span<const std::array<int, 3>> triangles,
                           std::span<const double> values,
                           std::span<const std::vector<int>> boundary_loops,
                           std::span<const char> loop_is_low,
-                          std::span<const LimbAtSaddle> limbs,
-                          int turn) {
+                          const SaddleParting& parting) {
     Builder builder(triangles, values);
     for (std::size_t k = 0; k < boundary_loops.size(); ++k) {
         builder.cap(boundary_loops[k], loop_is_low[k] != 0);
     }
     builder.split_chords();
-    for (std::size_t k = 0; k < limbs.size(); ++k) {
-        builder.take_off(limbs[k], static_cast<int>(k));
+    for (std::size_t k = 0; k < parting.limbs.size(); ++k) {
+        builder.take_off(parting.limbs[k], static_cast<int>(k));
     }
-    builder.part_saddles(turn);
+    builder.part_saddles(parting.turn);
     return builder.finish(static_cast<int>(values.size()));
 }
 

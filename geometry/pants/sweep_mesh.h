@@ -36,15 +36,18 @@ struct LimbAtSaddle {
     int neighbour = 0;
 };
 
+struct SaddleParting {
+    std::span<const LimbAtSaddle> limbs = {};
+    int turn = 0;  // Which part of a saddle of higher order is pulled off first.
+};
+
 // `values` per vertex; equal ones are told apart by index. Loops (surface to the left) are level
 // sets, lowest of all where `loop_is_low`, else highest; so are their caps beyond them. What
 // `values` says on loops is not read.
-// `turn` chooses which part of a saddle of higher order is pulled off first.
 SweepMesh make_sweep_mesh(std::span<const std::array<int, 3>> triangles,
                           std::span<const double> values,
                           std::span<const std::vector<int>> boundary_loops,
                           std::span<const char> loop_is_low,
-                          std::span<const LimbAtSaddle> limbs = {},
-                          int turn = 0);
+                          const SaddleParting& parting = {});
 
 }  // namespace leafcutter::geometry

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -27,7 +28,11 @@ using Eigen::Vector3d;
 constexpr double kMostExcess = 1.1;
 constexpr int kMostSizes = 20;
 // From a size where quads would face inwards to the next.
-constexpr double kFiner = 1.15;
+constexpr double kFiner = 1.25;
+// With more cells than this times the wanted they won't unfold either: sharp edges of the model. Of
+// those so many quads may fold over.
+constexpr double kMostRefined = 4.0;
+constexpr double kFoldedShare = 0.005;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -234,7 +239,7 @@ JoinedMesh build(const Foliation& foliation,
     }
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         Piece& piece = pieces[i];
-        check_facing(at(network.cylinders[i]), {mesh.vertices, piece.patch.quads}, piece.regions);
+        mesh.folded += count_inverted({mesh.vertices, piece.patch.quads}, piece.regions);
         mesh.parts.push_back({.chart = std::move(piece.chart),
                               .grid = std::move(piece.grid),
                               .quads = std::move(piece.patch.quads),
@@ -291,7 +296,9 @@ JoinedMesh join_cylinders(const Foliation& foliation,
     const JunctionCounter counter(foliation, network, wish_of(foliation, options, area));
     double size = counter.wanted_cells();
     int tightest = -1;
-    for (int tries = 0; tries < kMostSizes; ++tries) {
+    std::optional<JoinedMesh> folded;  // The first, if only a few of its quads face inwards.
+    for (int tries = 0; tries < kMostSizes && size < kMostRefined * counter.wanted_cells();
+         ++tries) {
         const JunctionCounts counts = counter.choose(size, context);
         if (tightest < 0) {
             tightest = counts.tightest;
@@ -300,22 +307,28 @@ JoinedMesh join_cylinders(const Foliation& foliation,
             size = counts.cells;
             continue;
         }
-        try {
-            JoinedMesh mesh = build(foliation, network, counts, options, context);
+        JoinedMesh mesh = build(foliation, network, counts, options, context);
+        if (mesh.folded == 0) {
             if (size > counter.wanted_cells()) {
                 refuse_width(options, area, static_cast<int>(std::lround(size)), tightest);
             }
             return mesh;
-        } catch (const Error& error) {
-            if (error.code() != "quads-inverted" || counter.has_fixed_counts()) {
-                throw;
-            }
-            size *= kFiner;
         }
+        if (size <= counter.wanted_cells() &&
+            static_cast<double>(mesh.folded) <= std::max(1.0, kFoldedShare * counts.cells)) {
+            folded = std::move(mesh);
+        }
+        if (counter.has_fixed_counts()) {
+            break;
+        }
+        size *= kFiner;
     }
-    throw Error(ErrorKind::SelfCheck, "junctions",
-                "quads: no strips are narrow enough to go on from one cylinder into the next; use "
-                "grid.junctions \"independent\"");
+    if (folded) {
+        return std::move(*folded);
+    }
+    throw Error(ErrorKind::SelfCheck, "quads-inverted",
+                "quads: too many face inwards where cylinders are joined; use narrower strips "
+                "(grid.strip_width_mm), or grid.junctions \"independent\"");
 }
 
 }  // namespace leafcutter::geometry

@@ -26,6 +26,7 @@ struct JoinedMesh {
     std::vector<Eigen::Vector3d> vertices;
     std::vector<int> cylinders;         // Of the foliation, ascending; none if none meet at arcs.
     std::vector<JoinedCylinder> parts;  // One each.
+    std::size_t folded = 0;  // Quads that face inwards at sharp edges, whatever their size.
 };
 
 // Throws Error(BadOption, "strips-too-wide") where so few quads can't carry the topology, or would

@@ -34,7 +34,7 @@ constexpr double kForbidden = 1e9;
 // wide that is twisted by a cell.
 constexpr double kArcSlant = 0.25;
 // Cylinders flatter than this have too little area to rule the rest by their twist.
-constexpr double kFlattest = 0.05;
+constexpr double kFlattest = 0.005;
 constexpr int kMostRowChanges = 1000;
 
 std::size_t at(int index) {

@@ -66,7 +66,7 @@ void check_regions(std::size_t cylinder, const CellRegions& regions, double area
     }
 }
 
-void check_facing(std::size_t cylinder, const Patch& patch, const CellRegions& regions) {
+std::size_t count_inverted(const Patch& patch, const CellRegions& regions) {
     std::size_t inverted = 0;
     for (std::size_t i = 0; i < patch.quads.size(); ++i) {
         const Vector3d& region = regions.vector_area[i];
@@ -75,12 +75,7 @@ void check_facing(std::size_t cylinder, const Patch& patch, const CellRegions& r
             ++inverted;
         }
     }
-    if (inverted > 0) {
-        throw Error(ErrorKind::SelfCheck, "quads-inverted",
-                    fmt::format("quads: {} of {} quads of cylinder {} face inwards; use narrower "
-                                "strips (grid.strip_width_mm)",
-                                inverted, patch.quads.size(), cylinder));
-    }
+    return inverted;
 }
 
 }  // namespace leafcutter::geometry

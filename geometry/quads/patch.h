@@ -34,7 +34,7 @@ std::vector<SagCell> sag_cells(const Patch& patch,
 // Throws Error(SelfCheck, "quads-regions") unless the cells stand for all of the cylinder's area.
 void check_regions(std::size_t cylinder, const CellRegions& regions, double area);
 
-// Throws Error(SelfCheck, "quads-inverted") if a quad faces inwards.
-void check_facing(std::size_t cylinder, const Patch& patch, const CellRegions& regions);
+// How many quads face inwards.
+std::size_t count_inverted(const Patch& patch, const CellRegions& regions);
 
 }  // namespace leafcutter::geometry

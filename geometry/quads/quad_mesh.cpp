@@ -1,7 +1,9 @@
 #include "geometry/quads/quad_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -31,7 +33,10 @@ using Eigen::Vector3d;
 constexpr double kWorseMean = 1.2;
 
 // Of the number of cells, where wide ones would fold over.
-constexpr int kMostDoublings = 5;
+constexpr int kMostDoublings = 4;
+constexpr double kMostRefinedCells = 500.0;
+// Of a cylinder's cells, that may fold over with no more than a warning.
+constexpr double kFoldedShare = 0.02;
 
 void refuse(const std::string& path, const std::string& what) {
     throw Error(ErrorKind::NotSupported, "not-supported-yet", path + ": " + what);
@@ -109,13 +114,15 @@ struct Work {
     const Cylinder& chart;
     const ChartSampler& sampler;
     double area = 0.0;
+    std::size_t most_inverted = 0;  // Quads that may face inwards.
 };
 
-void add_cylinder(QuadMesh& mesh,
-                  const Work& work,
-                  const CylinderGrid& counts,
-                  const GridOptions& options,
-                  const Context& context) {
+// Adds the quads, unless more than allowed face inwards; returns how many do.
+std::size_t add_cylinder(QuadMesh& mesh,
+                         const Work& work,
+                         const CylinderGrid& counts,
+                         const GridOptions& options,
+                         const Context& context) {
     const ChartGrid grid(work.chart, counts);
     Patch patch = sample_patch(grid, work.sampler, context);
     check_topology(work.cylinder, grid, patch);
@@ -124,8 +131,11 @@ void add_cylinder(QuadMesh& mesh,
     if (options.half_sag_offset) {
         offset_by_half_sag(patch.vertices, sag_cells(patch, regions, grid, work.sampler));
     }
-    check_facing(work.cylinder, patch, regions);
-    append(mesh, patch, grid, regions);
+    const std::size_t inverted = count_inverted(patch, regions);
+    if (inverted <= work.most_inverted) {
+        append(mesh, patch, grid, regions);
+    }
+    return inverted;
 }
 
 // The grid among `even` and its regraded copies that comes closest to the surface: the smallest
@@ -135,9 +145,11 @@ CylinderGrid closest_grid(const Work& work,
                           const GridOptions& options,
                           const Context& context) {
     const ClosestPoint surface(work.chart.mesh);
+    Work any = work;
+    any.most_inverted = std::numeric_limits<std::size_t>::max();
     const auto distance = [&](const CylinderGrid& grid) {
         QuadMesh mesh;
-        add_cylinder(mesh, work, grid, options, context);
+        add_cylinder(mesh, any, grid, options, context);
         mesh.addresses.assign(mesh.quads.size(), {});
         return measure_quality(mesh, surface, context).overall.surface_distance_percent;
     };
@@ -165,36 +177,55 @@ CylinderGrid closest_grid(const Work& work,
     return even;
 }
 
+CylinderGrid wished_grid(const Work& work,
+                         const GridWish& wish,
+                         const GridOptions& options,
+                         const Context& context) {
+    const CylinderGrid grid = choose_grid(work.chart, wish);
+    return options.spacing == Spacing::Uniform ? grid : closest_grid(work, grid, options, context);
+}
+
 // The cylinder's quads at the wished size, or smaller ones where those would face inwards: a few
-// cells can't follow a small cylinder that bends sharply.
+// cells can't follow a small cylinder that bends sharply. What sharp edges fold over at any size is
+// told, if it is little.
 void add_fine_enough(QuadMesh& mesh,
                      const Work& work,
-                     GridWish wish,
+                     const GridWish& wish,
                      const GridOptions& options,
                      const Context& context) {
     const bool may_refine = !wish.counts.rows || !wish.counts.cols;
-    for (int doublings = 0;; ++doublings) {
-        CylinderGrid grid = choose_grid(work.chart, wish);
-        if (options.spacing != Spacing::Uniform) {
-            grid = closest_grid(work, grid, options, context);
-        }
-        try {
-            add_cylinder(mesh, work, grid, options, context);
-        } catch (const Error& error) {
-            if (error.code() != "quads-inverted" || !may_refine || doublings == kMostDoublings) {
-                throw;
+    GridWish finer = wish;
+    for (int doublings = 0; doublings <= (may_refine ? kMostDoublings : 0); ++doublings) {
+        const CylinderGrid grid = wished_grid(work, finer, options, context);
+        if (add_cylinder(mesh, work, grid, options, context) == 0) {
+            if (doublings > 0) {
+                mesh.warnings.push_back(
+                    fmt::format("cylinder {}: has narrower strips than asked for, as wider ones "
+                                "would fold over",
+                                work.cylinder));
             }
-            wish.cells *= 2.0;
-            continue;
+            return;
         }
-        if (doublings > 0) {
-            mesh.warnings.push_back(
-                fmt::format("cylinder {}: has narrower strips than asked for, as wider ones would "
-                            "fold over",
-                            work.cylinder));
+        finer.cells *= 2.0;
+        if (finer.cells > kMostRefinedCells) {
+            break;  // Many cells, a few of them folded: a sharp edge rather than a small cylinder.
         }
-        return;
     }
+    const CylinderGrid grid = wished_grid(work, wish, options, context);
+    const int quads = grid.rows * grid.cols;
+    Work tolerant = work;
+    tolerant.most_inverted = static_cast<std::size_t>(std::max(kFoldedShare * quads, 1.0));
+    const std::size_t folded = add_cylinder(mesh, tolerant, grid, options, context);
+    if (folded > tolerant.most_inverted) {
+        throw Error(ErrorKind::SelfCheck, "quads-inverted",
+                    fmt::format("quads: {} of {} quads of cylinder {} face inwards; use narrower "
+                                "strips (grid.strip_width_mm) or smooth the model",
+                                folded, quads, work.cylinder));
+    }
+    mesh.warnings.push_back(
+        fmt::format("cylinder {}: {} of {} cells fold over at sharp edges of the "
+                    "model; crease them there, or smooth the model",
+                    work.cylinder, folded, quads));
 }
 
 void append_joined(QuadMesh& mesh, JoinedCylinder&& part) {
@@ -223,6 +254,12 @@ JoinedMesh join_rings(QuadMesh& mesh,
     if (!joined.cylinders.empty()) {
         mesh.vertices = std::move(joined.vertices);
         mesh.charts = foliation.cylinders;
+        if (joined.folded > 0) {
+            mesh.warnings.push_back(
+                fmt::format("{} cells fold over at sharp edges of the model; crease them there, or "
+                            "smooth the model",
+                            joined.folded));
+        }
         if (options.spacing != Spacing::Uniform) {
             mesh.warnings.emplace_back(
                 "grid.spacing: cylinders that are joined have uniform spacing, as their columns "

@@ -4,10 +4,10 @@
 // Removed area. A conformal map makes the tip of a limb tiny in (g, f), so that one cell can stand
 // for a whole finger: the quad closes the limb's foot like a lid. The surface behind the lid is not
 // covered, and no other measure says so, as each sees only the lid. A cell caps a limb where the
-// region it stands for is more than kCapFactor times the area the quad projects to. A chord that
-// bends through a right angle stays below that: over a quarter of a round cylinder the factor is
-// 1.11, over a spherical cap of 90 degrees 1.17. Beyond, the quad doesn't follow the surface any
-// more and the difference counts as removed.
+// region it stands for is more than kCapFactor times the area the quad projects to. Where a chord
+// bends through a right angle that begins: over a quarter of a round cylinder the factor is 1.11,
+// over a spherical cap of 90 degrees 1.17. Beyond, the quad doesn't follow the surface any more and
+// the difference counts as removed.
 
 #include "geometry/quads/quality.h"
 
@@ -30,7 +30,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kSamples = 7;  // Per side of a quad.
-constexpr double kCapFactor = 1.2;
+constexpr double kCapFactor = 1.1;
 
 struct Quad {
     Vector3d a;

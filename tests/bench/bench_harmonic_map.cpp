@@ -22,6 +22,7 @@
 #include <benchmark/benchmark.h>
 
 #include "geometry/io/read_mesh.h"
+#include "geometry/pants/coarse_maps.h"
 #include "geometry/pants/harmonic_map.h"
 #include "geometry/pants/heat_flow.h"
 #include "geometry/pants/hierarchy.h"
@@ -139,7 +140,7 @@ void compare_levels(benchmark::State& state, const TriangleMesh& mesh) {
             const geometry::Hierarchy hierarchy = geometry::build_hierarchy(
                 {mesh, std::vector<int>(mesh.positions.size(), -1)}, 0, 1500, {});
             const auto coarse = geometry::solve_coarsest(hierarchy, options, {});
-            start.map = geometry::refine_map(hierarchy, coarse.front(), {}).map;
+            start.map = geometry::refine_map(hierarchy, coarse.front().map, {}).map;
             // The hierarchy solves on flipped edges; compared is the energy of the edges as given.
             report = geometry::solve_harmonic_map(start.map, start.rings, start.weights,
                                                   geometry::MapStart::Warm, {});

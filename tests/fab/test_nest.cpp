@@ -185,6 +185,27 @@ TEST(Nest, GivesTheSameLayoutForTheSameSeed) {
     expect_same(nest(pointers(pieces), kSheet, options), nest(pointers(pieces), kSheet, options));
 }
 
+TEST(Nest, GivesTheSameLayoutOnOneThreadAndTwo) {
+    const std::vector<Piece> pieces = random_bands(24, 9);
+    NestOptions options;
+    options.max_evaluations = 60'000;
+    geometry::Context two;
+    two.threads = 2;
+    expect_same(nest(pointers(pieces), kSheet, options),
+                nest(pointers(pieces), kSheet, options, two));
+}
+
+TEST(Nest, NamesThePieceThatCrossesItself) {
+    std::vector<Piece> pieces = random_bands(3, 1);
+    pieces[1].outline = {{0.0, 0.0}, {40.0, 0.0}, {10.0, 30.0}, {20.0, -10.0}};
+    try {
+        nest(pointers(pieces), kSheet, {});
+        FAIL();
+    } catch (const geometry::Error& error) {
+        EXPECT_NE(std::string(error.what()).find("piece W2.1"), std::string::npos);
+    }
+}
+
 TEST(Nest, NeverGetsWorseWithMoreEvaluations) {
     const std::vector<Piece> pieces = random_bands(60, 11);
     NestOptions options;

@@ -59,8 +59,10 @@ TEST(Choice, AFingerOnAPlateIsOpenedAtItsTip) {
     ASSERT_GE(opened.alternatives.size(), 2U);
     EXPECT_EQ(opened.alternatives[0].name, "disk");
     EXPECT_GT(opened.alternatives[0].spread.largest, 5.0 * opened.spread.largest);
-    ASSERT_FALSE(opened.warnings.empty());
-    EXPECT_NE(opened.warnings[0].find("1 hole is opened"), std::string::npos);
+    EXPECT_TRUE(
+        std::any_of(opened.warnings.begin(), opened.warnings.end(), [](const std::string& warning) {
+            return warning.find("1 hole is opened") != std::string::npos;
+        }));
 
     FoliationOptions options;
     options.puncture = PunctureChoice::None;

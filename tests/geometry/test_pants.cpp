@@ -51,7 +51,9 @@ void expect_pants(const Mesh& mesh, double energy_tolerance = 0.05) {
     const Topology topology = analyse_topology(mesh);
     const int loops = static_cast<int>(topology.boundary_loops.size());
     const int genus = (2 - loops - topology.euler) / 2;
-    const Foliation foliation = compute_foliation(mesh);
+    FoliationOptions whole;
+    whole.puncture = PunctureChoice::None;
+    const Foliation foliation = compute_foliation(mesh, whole);
     EXPECT_EQ(foliation.mode, FoliationMode::Pants);
     ASSERT_EQ(static_cast<int>(foliation.cylinders.size()), 3 * genus - 3 + 2 * loops);
     EXPECT_EQ(static_cast<int>(foliation.singularities.size()), -2 * topology.euler);

@@ -1,4 +1,7 @@
+#include <atomic>
 #include <limits>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -48,6 +51,40 @@ TEST_P(SparseSolverTest, AddsUpEntriesOfEqualPlace) {
     const Eigen::VectorXd x = solver.solve(Eigen::Vector2d(2.0 - 0.5, -0.5 + 3.0));
     EXPECT_NEAR(x[0], 1.0, 1e-14);
     EXPECT_NEAR(x[1], 1.0, 1e-14);
+}
+
+// Large enough for supernodes, which call the BLAS.
+TEST_P(SparseSolverTest, GivesSeveralThreadsTheSameAnswers) {
+    constexpr int kSide = 60;
+    std::vector<MatrixEntry> lower;
+    for (int v = 0; v < kSide * kSide; ++v) {
+        lower.push_back({v, v, 4.01});
+        if (v % kSide != 0) {
+            lower.push_back({v, v - 1, -1.0});
+        }
+        if (v >= kSide) {
+            lower.push_back({v, v - kSide, -1.0});
+        }
+    }
+    const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(kSide * kSide, -1.0, 2.0);
+    const auto solve = [&] { return SparseSolver(kSide * kSide, lower, GetParam()).solve(load); };
+    const Eigen::VectorXd alone = solve();
+    std::atomic<int> different{0};
+    {
+        std::vector<std::jthread> threads;
+        for (int t = 0; t < 4; ++t) {
+            threads.emplace_back([&] {
+                for (int round = 0; round < 40; ++round) {
+                    try {
+                        different += solve() != alone ? 1 : 0;
+                    } catch (const Error&) {
+                        ++different;
+                    }
+                }
+            });
+        }
+    }
+    EXPECT_EQ(different, 0);
 }
 
 TEST_P(SparseSolverTest, RefusesWhatIsNotPositiveDefinite) {
