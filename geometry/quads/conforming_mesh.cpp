@@ -297,8 +297,8 @@ JoinedMesh join_cylinders(const Foliation& foliation,
     double size = counter.wanted_cells();
     int tightest = -1;
     std::optional<JoinedMesh> folded;  // The first, if only a few of its quads face inwards.
-    for (int tries = 0; tries < kMostSizes && size < kMostRefined * counter.wanted_cells();
-         ++tries) {
+    double most = 0.0;                 // Cells, once there are enough of them for the topology.
+    for (int tries = 0; tries < kMostSizes && (most == 0.0 || size < most); ++tries) {
         const JunctionCounts counts = counter.choose(size, context);
         if (tightest < 0) {
             tightest = counts.tightest;
@@ -307,6 +307,7 @@ JoinedMesh join_cylinders(const Foliation& foliation,
             size = counts.cells;
             continue;
         }
+        most = most > 0.0 ? most : kMostRefined * size;
         JoinedMesh mesh = build(foliation, network, counts, options, context);
         if (mesh.folded == 0) {
             if (size > counter.wanted_cells()) {
