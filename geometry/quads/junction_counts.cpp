@@ -272,7 +272,7 @@ std::optional<JunctionCounter::Scored> JunctionCounter::try_size(double cells,
     counts.arc_cells.assign(solution->numbers.data(), solution->numbers.data() + arcs);
     set_twists(counts);
     set_rows(counts, cells);
-    found.score = strain(counts, cells);
+    found.score = strain(counts, cells) + kForbidden * counts.misfits;
     for (Index a = 0; a < arcs; ++a) {
         const double off = counts.arc_cells[static_cast<std::size_t>(a)] - wished[a];
         found.score += square(off * arc_weight(wished[a])) / cells;
@@ -342,6 +342,7 @@ void JunctionCounter::set_rows(JunctionCounts& counts, double cells) const {
     }
     for (const int c : network_.cylinders) {
         counts.rows[at(c)] = nearest_rows(counts, c, parities[at(c)]);
+        counts.misfits += parities[at(c)] && counts.rows[at(c)] % 2 != *parities[at(c)] ? 1 : 0;
     }
     // Rows more or less where that comes closer to the wanted size.
     double least = strain(counts, cells);

@@ -299,11 +299,14 @@ TEST(Conforming, HonoursFixedCountsOrSaysWhyNot) {
     const Model& model = double_torus();
     GridOptions options = about(model, 800.0);
     const QuadMesh free = build_quad_mesh(model.foliation, options);
-    options.per_cylinder = {{.rows = free.grids[0].rows + 2, .cols = free.grids[0].cols + 2}};
-    const QuadMesh fixed = build_quad_mesh(model.foliation, options);
-    EXPECT_EQ(fixed.grids[0].rows, free.grids[0].rows + 2);
-    EXPECT_EQ(fixed.grids[0].cols, free.grids[0].cols + 2);
-    EXPECT_TRUE(alternates(fixed));
+    options.per_cylinder = {{.rows = free.grids[0].rows + 2, .cols = std::nullopt}};
+    const QuadMesh rows = build_quad_mesh(model.foliation, options);
+    EXPECT_EQ(rows.grids[0].rows, free.grids[0].rows + 2);
+    EXPECT_TRUE(alternates(rows));
+    options.per_cylinder = {{.rows = std::nullopt, .cols = free.grids[0].cols + 2}};
+    const QuadMesh cols = build_quad_mesh(model.foliation, options);
+    EXPECT_EQ(cols.grids[0].cols, free.grids[0].cols + 2);
+    EXPECT_TRUE(alternates(cols));
     options.per_cylinder[0].cols = free.grids[0].cols + 1;
     EXPECT_THROW(build_quad_mesh(model.foliation, options), Error);
 }
