@@ -165,6 +165,13 @@ private:
             "<li>Join the pieces of a strip in the order of their numbers: the tab at the end of "
             "each piece is glued under the start of the next.</li>\n"
             "<li>Fold lightly along scored lines.</li>\n";
+        if (std::any_of(job_.strips.begin(), job_.strips.end(),
+                        [](const Strip& strip) { return !strip.next.empty(); })) {
+            out_ +=
+                "<li>Cylinders meet cell by cell: where a warp strip ends at the rim of its "
+                "cylinder, its tab goes under the start of the strip named in the list of parts, "
+                "and the weave goes on as if there were no joint.</li>\n";
+        }
         for (std::size_t i = 0; i < job_.quads.grids.size(); ++i) {
             const geometry::ChartShape shape = job_.quads.grids[i].shape;
             const bool rings = shape != geometry::ChartShape::Rectangle;
@@ -317,12 +324,15 @@ private:
     }
 
     static std::string note_of(const Strip& strip, const std::string& id) {
-        if (strip.pieces.size() == 1) {
-            return strip.closed ? "closes to a ring" : "";
+        if (strip.pieces.size() == 1 && strip.closed) {
+            return "closes to a ring";
         }
         const auto at = std::find(strip.pieces.begin(), strip.pieces.end(), id);
         if (at + 1 != strip.pieces.end()) {
             return "tab to " + *(at + 1);
+        }
+        if (!strip.next.empty()) {
+            return "tab to " + strip.next;
         }
         return strip.closed ? "tab to " + strip.pieces.front() : "";
     }

@@ -108,6 +108,7 @@ json cylinder_json(const geometry::Cylinder& cylinder, const geometry::CylinderG
             {"cols", grid.cols},
             {"column_shift", grid.column_shift},
             {"shear_deg", grid.shear_deg},
+            {"stretch", grid.stretch},
             {"energy", cylinder.energy},
             {"conformal_gap", cylinder.conformal_gap},
             {"flux_mismatch", cylinder.flux_mismatch}};

@@ -192,15 +192,10 @@ private:
     }
 
     void make_quads(const Context& context) {
-        geometry::GridOptions grid = result_.params.grid;
-        if (grid.junctions == geometry::Junctions::Conforming &&
-            result_.foliation.cylinders.size() > 1) {
-            grid.junctions = geometry::Junctions::Independent;
-            warnings_.emplace_back(
-                "junctions: cylinders are woven one by one and glued; conforming junctions come "
-                "later");
+        result_.quads = geometry::build_quad_mesh(result_.foliation, result_.params.grid, context);
+        if (!result_.quads.charts.empty()) {
+            result_.foliation.cylinders = std::move(result_.quads.charts);
         }
-        result_.quads = geometry::build_quad_mesh(result_.foliation, grid, context);
         warnings_.insert(warnings_.end(), result_.quads.warnings.begin(),
                          result_.quads.warnings.end());
         const geometry::ClosestPoint surface(geometry::to_triangle_mesh(mesh_));

@@ -116,8 +116,9 @@ public:
           cells_(cells),
           closed_(strip.closed),
           options_(options),
-          total_(static_cast<int>(cells.size())) {
-        const Unfolded whole = unfold(mesh, cells, {0, closed_ ? total_ + 1 : total_});
+          total_(static_cast<int>(strip.quads.size())),
+          beyond_(static_cast<int>(strip.beyond.size())) {
+        const Unfolded whole = unfold(mesh, cells, {0, total_ + (closed_ ? 1 : beyond_)});
         start_ = closed_ ? opening_cell(whole, total_, ordinal_of(strip)) : 0;
         for (std::size_t i = 0; i < cells.size(); ++i) {
             steps_.push_back((middle(whole, i + 1) - middle(whole, i)).norm());
@@ -204,11 +205,12 @@ private:
 
     // Cells behind a piece that its tab may lie on.
     int tab_cells(int done, int count, double tab_mm) const {
-        const int available = closed_ ? std::max(1, total_ / 2) : total_ - done - count;
+        const int available = closed_ ? std::max(1, total_ / 2) : total_ + beyond_ - done - count;
         double length = 0.0;
         int needed = 0;
         while (needed < available && length < tab_mm) {
-            length += steps_[static_cast<std::size_t>((start_ + done + count + needed) % total_)];
+            const int cell = start_ + done + count + needed;
+            length += steps_[static_cast<std::size_t>(closed_ ? cell % total_ : cell)];
             ++needed;
         }
         return needed;
@@ -237,6 +239,7 @@ private:
     bool closed_;
     const SplitOptions& options_;
     int total_;
+    int beyond_;  // Cells past the end that a tab may lie on.
     int start_ = 0;
     std::vector<double> steps_;  // Length of the middle line in each cell.
 };

@@ -23,7 +23,9 @@ struct Strip {
     Family family = Family::Weft;
     std::vector<int> cylinders;
     bool closed = false;
-    std::vector<int> quads;           // In walking order.
+    std::vector<int> quads;   // In walking order.
+    std::string next;         // The strip that its end is joined to, across a critical leaf,
+    std::vector<int> beyond;  // and quads there, going on, for the tab to lie on.
     std::vector<std::string> pieces;  // Ids, in walking order.
 };
 

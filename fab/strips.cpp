@@ -1,6 +1,8 @@
 #include "fab/strips.h"
 
 #include <algorithm>
+#include <map>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -13,17 +15,41 @@ namespace leafcutter::fab {
 
 namespace {
 
+// Cells of the next strip that a tab may lie on, at most.
+constexpr std::size_t kMostBeyond = 16;
+
+// Tells each strip which one it goes on into; `next_quads` are the first of those.
+void link_strips(const std::vector<int>& next_quads, std::span<Strip> strips) {
+    std::map<int, const Strip*> by_first;
+    for (const Strip& strip : strips) {
+        by_first.emplace(strip.quads.front(), &strip);
+    }
+    for (std::size_t i = 0; i < strips.size(); ++i) {
+        const auto next = by_first.find(next_quads[i]);
+        if (next_quads[i] < 0 || next == by_first.end()) {
+            continue;
+        }
+        const std::vector<int>& quads = next->second->quads;
+        const std::size_t count = std::min(kMostBeyond, quads.size());
+        strips[i].next = next->second->id;
+        strips[i].beyond.assign(quads.begin(), quads.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+}
+
 void add_strips(const geometry::QuadMesh& mesh,
                 Family family,
                 geometry::ThreadEnds ends,
                 std::vector<Strip>& strips) {
     int number = 0;
+    const std::size_t first = strips.size();
+    std::vector<int> next_quads;
     for (geometry::Thread& thread : geometry::trace_threads(mesh, family, ends)) {
         Strip strip;
         strip.id = fmt::format("{}{}", family == Family::Weft ? 'W' : 'P', ++number);
         strip.family = family;
         strip.closed = thread.closed;
         strip.quads = std::move(thread.quads);
+        next_quads.push_back(thread.next);
         for (const int quad : strip.quads) {
             const int cylinder = mesh.addresses[static_cast<std::size_t>(quad)].cylinder;
             const auto& known = strip.cylinders;
@@ -33,6 +59,7 @@ void add_strips(const geometry::QuadMesh& mesh,
         }
         strips.push_back(std::move(strip));
     }
+    link_strips(next_quads, {strips.begin() + static_cast<std::ptrdiff_t>(first), strips.end()});
 }
 
 Piece to_piece(const Strip& strip, CutPiece& cut, std::string id) {

@@ -134,13 +134,22 @@ bool meet(const WalkedCell& cell, const WalkedCell& next) {
 }  // namespace
 
 std::vector<WalkedCell> walk_cells(const geometry::QuadMesh& mesh, const Strip& strip) {
+    std::vector<int> quads = strip.quads;
+    quads.insert(quads.end(), strip.beyond.begin(), strip.beyond.end());
     std::vector<WalkedCell> cells;
-    cells.reserve(strip.quads.size());
-    for (const int quad : strip.quads) {
-        const WalkedCell forward = walked(mesh, quad, strip.family, true);
-        const WalkedCell backward = walked(mesh, quad, strip.family, false);
-        const bool turned =
-            !cells.empty() && !meet(cells.back(), forward) && meet(cells.back(), backward);
+    cells.reserve(quads.size());
+    for (std::size_t i = 0; i < quads.size(); ++i) {
+        const WalkedCell forward = walked(mesh, quads[i], strip.family, true);
+        const WalkedCell backward = walked(mesh, quads[i], strip.family, false);
+        bool turned = false;
+        if (i > 0) {
+            turned = !meet(cells.back(), forward) && meet(cells.back(), backward);
+        } else if (quads.size() > 1) {
+            const WalkedCell next = walked(mesh, quads[1], strip.family, true);
+            const WalkedCell next_turned = walked(mesh, quads[1], strip.family, false);
+            turned = !meet(forward, next) && !meet(forward, next_turned) &&
+                     (meet(backward, next) || meet(backward, next_turned));
+        }
         cells.push_back(turned ? backward : forward);
     }
     return cells;

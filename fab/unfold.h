@@ -22,7 +22,8 @@ struct WalkedCell {
     Bend rising = Bend::Ac;  // Name of the diagonal r0–l1; the other one is l0–r1.
 };
 
-// The cells of `strip` in walking order. A cell that is met against its own direction is turned.
+// The cells of `strip` in walking order, then those beyond its end. A cell that is met against its
+// own direction is turned.
 std::vector<WalkedCell> walk_cells(const geometry::QuadMesh& mesh, const Strip& strip);
 
 // A run of cells of a strip; closed strips wrap.

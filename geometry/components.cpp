@@ -117,6 +117,7 @@ void append(std::vector<T>& to, std::vector<T>& from) {
 
 void append_part(Foliation& whole, Foliation part, const std::string& name) {
     const int edges = static_cast<int>(whole.graph.edges.size());
+    const int points = static_cast<int>(whole.critical_points.size());
     for (MetricGraph::Edge edge : part.graph.edges) {
         edge.from += whole.graph.nodes;
         edge.to += whole.graph.nodes;
@@ -125,6 +126,9 @@ void append_part(Foliation& whole, Foliation part, const std::string& name) {
     whole.graph.nodes += part.graph.nodes;
     for (Cylinder& cylinder : part.cylinders) {
         cylinder.graph_edge += edges;
+        for (int& point : cylinder.critical_point) {
+            point += point < 0 ? 0 : points;
+        }
     }
     for (Alternative& alternative : part.alternatives) {
         alternative.name.insert(0, name);
@@ -135,6 +139,7 @@ void append_part(Foliation& whole, Foliation part, const std::string& name) {
     append(whole.cylinders, part.cylinders);
     append(whole.singularities, part.singularities);
     append(whole.critical_graph, part.critical_graph);
+    append(whole.critical_points, part.critical_points);
     append(whole.punctures, part.punctures);
     append(whole.alternatives, part.alternatives);
     append(whole.warnings, part.warnings);

@@ -65,6 +65,12 @@ struct LoopName {
 
 enum class Components { Each, Largest };
 
+// A grid of about square cells that is to go on from cylinder to cylinder.
+struct JunctionAim {
+    double cells = 0.0;         // On the whole surface.
+    bool even_columns = false;  // Round every cylinder, so that colours can alternate.
+};
+
 struct FoliationOptions {
     FoliationMode mode = FoliationMode::Auto;
     std::optional<std::array<int, 4>> corners = {};  // Disk: boundary vertices, any order.
@@ -75,10 +81,16 @@ struct FoliationOptions {
     std::vector<std::vector<int>> loops = {};  // PantsSource::User: closed, each vertex joined to
                                                // the next by a shortest path of edges.
     SweepFunction function = SweepFunction::Auto;
+    std::vector<std::vector<int>> forbidden_loops = {};  // As `loops`: ways round the surface that
+                                                         // no cylinder may go.
     std::optional<std::vector<double>> weights = {};  // h > 0 of each graph edge; else automatic.
+    bool even_cells = false;  // Chooses function and weights for cells of even area.
+    std::optional<JunctionAim> junctions = {};  // Weights may change a little, so that cylinders
+                                                // meet in whole columns.
 
     std::optional<std::array<int, 2>> poles = {};  // SpherePolar: vertices.
-    std::vector<int> near = {};  // SpherePillowcase: four vertices near its singular points.
+    std::vector<int> near = {};          // Vertices near which singular points are wanted; for
+                                         // SpherePillowcase four of them place its own.
     std::vector<LoopName> sources = {};  // OneForm: f = 0 there; else the longest loop.
     std::vector<LoopName> sinks = {};    // OneForm: f = 1 there; else all other loops.
     PunctureChoice puncture = PunctureChoice::Auto;
@@ -117,6 +129,10 @@ struct Cylinder {
     // an edge equal up to a period. Every triangle has positive area in (g, f).
     std::vector<std::array<Eigen::Vector2d, 3>> corner_gf;
 
+    // Per vertex its place in Foliation::critical_points, or -1. Empty where the cylinder borders
+    // on no other.
+    std::vector<int> critical_point;
+
     double width = 0.0;   // Range or period of g: the circumference of a ring.
     double height = 0.0;  // Range or period of f.
     double shear = 0.0;   // Torus: the g part of the second period. Pillowcase: place of a fold.
@@ -133,11 +149,30 @@ struct Singularity {
     int prongs = 0;
 };
 
+// A vertex of the critical graph, by which the cylinders on both sides know the place.
+struct CriticalPoint {
+    Eigen::Vector3d position;
+    int prongs = 2;  // 3 where three cylinders meet.
+};
+
 // How evenly large the cells of a grid of squares are on the surface: they grow and shrink with the
 // conformal factor, exponentially along limbs.
 struct CellSpread {
     double variation = 0.0;  // Standard deviation over mean of cell areas.
     double largest = 0.0;    // Edge, in mean edges, of the cells that hold the top 1 % of the area.
+};
+
+// How near a singular point lies to where one was wanted.
+struct ReachedPoint {
+    int vertex = 0;         // Of the input.
+    int singularity = 0;    // In Foliation::singularities.
+    double distance = 0.0;  // Along the surface.
+};
+
+// Coefficient of variation of cell areas, as the automatic weights have it and as evened out.
+struct EvenedCells {
+    double before = 0.0;
+    double after = 0.0;
 };
 
 // Another way to foliate the same surface that was looked at.
@@ -155,11 +190,14 @@ struct Foliation {
     std::vector<Singularity> singularities;
     // Preimages of the graph's nodes, as polylines from singular point to singular point.
     std::vector<std::vector<Eigen::Vector3d>> critical_graph;
-    std::optional<std::array<int, 4>> corners;  // Disk: those used, mesh vertices.
-    std::vector<Puncture> punctures;            // Those opened.
+    std::vector<CriticalPoint> critical_points;  // Its vertices, where cylinders are rings.
+    std::optional<std::array<int, 4>> corners;   // Disk: those used, mesh vertices.
+    std::vector<Puncture> punctures;             // Those opened.
     double energy = 0.0;
     int iterations = 0;
     CellSpread spread;
+    std::vector<ReachedPoint> reached;      // Per wanted singular point, where any was wanted.
+    std::optional<EvenedCells> evened;      // With FoliationOptions::even_cells.
     std::vector<Alternative> alternatives;  // Including the one chosen, where there was a choice.
     std::vector<std::string> warnings;
 };

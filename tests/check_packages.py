@@ -2,11 +2,11 @@
 """Weaves the public meshes and lets the independent package checker judge every package.
 
 usage: check_packages.py LEAFCUTTER SHARED [--all | --files NAME…] [--mode MODE] [--set A.B=VALUE]…
-                         [--third] [--two] [--timeout S] [--markdown FILE] [--keep DIR]
+                         [--junctions KIND] [--third] [--two] [--timeout S] [--markdown FILE] [--keep DIR]
 
 Without --all or --files a quick selection with one mesh of each kind; --all takes every mesh there is. --third
-weaves each once more with strips a third as wide, --two runs two at a time. Cylinders are woven one by one
-(independent junctions). Prints a table, as Markdown to a file if wished; exit status 1 if anything is at fault,
+weaves each once more with strips a third as wide, --two runs two at a time. Cylinders are woven one by one,
+as one with --junctions conforming. Prints a table, as Markdown to a file if wished; exit status 1 if anything is at fault,
 77 (skipped) where the shared data isn't there.
 """
 import argparse
@@ -125,7 +125,7 @@ def selection(arguments, folder):
     else:
         named = [(name, []) for name in arguments.files] if arguments.files else QUICK
     mode = [f"foliation.mode={arguments.mode}"] if arguments.mode else []
-    base = ["grid.junctions=independent", *arguments.set]
+    base = [f"grid.junctions={arguments.junctions}", *arguments.set]
     cases = [(name, [*base, *own, *mode]) for name, own in named]
     if arguments.third:
         cases += [(name, [*settings, "grid.strip_width_mm=3.3333333"]) for name, settings in cases]
@@ -139,6 +139,7 @@ def main():
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--files", nargs="+", default=[])
     parser.add_argument("--mode")
+    parser.add_argument("--junctions", choices=["conforming", "independent"], default="independent")
     parser.add_argument("--set", action="append", default=[])
     parser.add_argument("--third", action="store_true")
     parser.add_argument("--two", action="store_true")

@@ -143,6 +143,7 @@ Foliation chart_of(const Piece& piece,
         }
     }
     for (int& source : cylinder.source_vertex) {
+        cylinder.critical_point.push_back(source < 0 ? -1 : piece.critical_point[at(source)]);
         source = source < 0 ? -1 : piece.source_vertex[at(source)];
     }
     return ring;
@@ -198,6 +199,7 @@ Foliation assemble(Solved solved, const FoliationOptions& options, const Context
         foliation.singularities.push_back({position, 3});
     }
     foliation.critical_graph = std::move(solved.sliced.critical_arcs);
+    foliation.critical_points = std::move(solved.sliced.critical_points);
 
     // The largest first: then threads end together.
     const std::vector<Piece>& pieces = solved.sliced.pieces;

@@ -46,6 +46,41 @@ ChartMap start_chart(const ChartSurface& surface) {
     return map;
 }
 
+ChartMap reopen_chart(const Cylinder& cylinder) {
+    ChartMap map;
+    map.mesh = cylinder.mesh;
+    map.edges = build_half_edges(map.mesh.triangles, static_cast<int>(map.mesh.positions.size()));
+    map.source_vertex = cylinder.source_vertex;
+    map.shape = cylinder.shape;
+    map.width = cylinder.width;
+    map.height = cylinder.height;
+    map.shear = cylinder.shear;
+    map.gf.assign(map.mesh.positions.size(), Eigen::Vector2d::Zero());
+    for (std::size_t t = 0; t < map.mesh.triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            map.gf[at(map.mesh.triangles[t][k])] = cylinder.corner_gf[t][k];
+        }
+    }
+    if (map.shape == ChartShape::Rectangle) {
+        return map;
+    }
+    // Whole periods, so that both half-edges of an edge say the same.
+    for (std::size_t t = 0; t < map.mesh.triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto& corners = cylinder.corner_gf[t];
+            const auto& triangle = map.mesh.triangles[t];
+            const Eigen::Vector2d rest =
+                corners[(k + 1) % 3] - corners[k] -
+                (map.gf[at(triangle[(k + 1) % 3])] - map.gf[at(triangle[k])]);
+            const double turns =
+                map.shape == ChartShape::Torus ? std::round(rest.y() / map.height) : 0.0;
+            const double rounds = std::round((rest.x() - turns * map.shear) / map.width);
+            map.jump.emplace_back(rounds * map.width + turns * map.shear, turns * map.height);
+        }
+    }
+    return map;
+}
+
 std::array<Eigen::Vector2d, 3> lifted_corners(const ChartMap& map, int triangle) {
     const int h = 3 * triangle;
     const Eigen::Vector2d first = map.gf[at(map.edges.from_of(h))];

@@ -43,6 +43,9 @@ struct ChartMap {
 // A map of `surface` with coordinates yet to be set.
 ChartMap start_chart(const ChartSurface& surface);
 
+// The map that a finished cylinder came from, but for lifts: to change its coordinates.
+ChartMap reopen_chart(const Cylinder& cylinder);
+
 // (g, f) of the corners of a triangle, lifted continuously from its first corner.
 std::array<Eigen::Vector2d, 3> lifted_corners(const ChartMap& map, int triangle);
 

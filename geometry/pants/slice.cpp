@@ -29,6 +29,11 @@ std::uint64_t name_of(PointKind kind, int id, int end, int side) {
            (static_cast<std::uint64_t>(end) << 1U) | static_cast<std::uint64_t>(side);
 }
 
+struct CurvePoint {
+    int number = 0;  // As CurveJoiner counts.
+    Eigen::Vector3d position;
+};
+
 // A piece under construction.
 struct Builder {
     Piece piece;
@@ -38,16 +43,18 @@ struct Builder {
     int add(const Eigen::Vector3d& position, int source, char end) {
         piece.mesh.positions.push_back(position);
         piece.source_vertex.push_back(source);
+        piece.critical_point.push_back(-1);
         at_end.push_back(end);
         return static_cast<int>(piece.mesh.positions.size()) - 1;
     }
 
-    // A point of a cut, by name.
-    int point(std::uint64_t name, const Eigen::Vector3d& position, char end) {
+    // A point of a cut, by name; `critical` is its place on the critical graph.
+    int point(std::uint64_t name, const CurvePoint& critical, char end) {
         const auto [found, fresh] =
             index.emplace(name, static_cast<int>(piece.mesh.positions.size()));
         if (fresh) {
-            add(position, -1, end);
+            add(critical.position, -1, end);
+            piece.critical_point.back() = critical.number;
         }
         return found->second;
     }
@@ -70,6 +77,8 @@ public:
         neighbours_[at(a)].push_back(b);
         neighbours_[at(b)].push_back(a);
     }
+
+    const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
     std::vector<std::vector<Eigen::Vector3d>> curves() {
         std::transform(neighbours_.begin(), neighbours_.end(), std::back_inserter(is_end_),
@@ -130,6 +139,12 @@ public:
             sliced_.pieces.push_back(std::move(builder.piece));
         }
         sliced_.critical_arcs = curves_.curves();
+        for (const Eigen::Vector3d& position : curves_.points()) {
+            sliced_.critical_points.push_back({.position = position, .prongs = 2});
+        }
+        for (const int meeting : meetings_) {
+            sliced_.critical_points[at(meeting)].prongs = 3;
+        }
         return std::move(sliced_);
     }
 
@@ -192,22 +207,23 @@ private:
                ratio * mesh_.positions[at(ends.to)];
     }
 
-    int curve_point(int t, int k) {
+    CurvePoint curve_point(int t, int k) {
         const int edge = side_of(t, k).first;
-        return curves_.point(name_of(PointKind::EdgeCut, edge, 0, 0), cut_position(edge));
+        const Eigen::Vector3d position = cut_position(edge);
+        return {.number = curves_.point(name_of(PointKind::EdgeCut, edge, 0, 0), position),
+                .position = position};
     }
 
     // The cut point on side k, in the piece of the corner it is seen from.
     int cut_point(int t, int k, bool from_start) {
         const auto [edge, forward] = side_of(t, k);
         const MeshEdge& ends = rings_.edges[at(edge)];
-        const Eigen::Vector3d position = cut_position(edge);
         const bool from_edge_start = forward == from_start;
         const Dart dart = first_dart(t, k, from_start);
         const int side = runs_forward(dart) ? 1 : 0;
         const int seen_from = from_edge_start ? ends.from : ends.to;
         return builder_of(seen_from).point(
-            name_of(PointKind::EdgeCut, edge, from_edge_start ? 0 : 1, side), position,
+            name_of(PointKind::EdgeCut, edge, from_edge_start ? 0 : 1, side), curve_point(t, k),
             static_cast<char>(1 + side));
     }
 
@@ -228,7 +244,7 @@ private:
         auto& tip = builder_of(mesh_.triangles[at(t)][at(a)]).piece.mesh.triangles;
         const std::array<int, 3> small{corner(t, a), cut_point(t, a, true), cut_point(t, c, false)};
         tip.push_back(small);
-        curves_.join(curve_point(t, a), curve_point(t, c));
+        curves_.join(curve_point(t, a).number, curve_point(t, c).number);
         auto& rest = builder_of(mesh_.triangles[at(t)][at(b)]).piece;
         const int p = cut_point(t, a, false);
         const int q = cut_point(t, c, true);
@@ -266,15 +282,17 @@ private:
         }
         sliced_.three_prongs.push_back(centre);
         const int meeting = curves_.point(name_of(PointKind::Centre, t, 0, 0), centre);
+        meetings_.push_back(meeting);
         for (int k = 0; k < 3; ++k) {
-            curves_.join(meeting, curve_point(t, k));
+            curves_.join(meeting, curve_point(t, k).number);
         }
         for (int k = 0; k < 3; ++k) {
             const int v = mesh_.triangles[at(t)][at(k)];
             const int side = runs_forward(first_dart(t, k, true)) ? 1 : 0;
             Builder& builder = builder_of(v);
-            const int m = builder.point(name_of(PointKind::Centre, 3 * t + k, 0, side), centre,
-                                        static_cast<char>(1 + side));
+            const int m =
+                builder.point(name_of(PointKind::Centre, 3 * t + k, 0, side),
+                              {.number = meeting, .position = centre}, static_cast<char>(1 + side));
             const int tip = corner(t, k);
             const int p = cut_point(t, k, true);
             const int q = cut_point(t, (k + 2) % 3, false);
@@ -337,6 +355,7 @@ private:
     std::vector<Builder> builders_;
     std::vector<int> local_;  // Per vertex: its number in its piece.
     CurveJoiner curves_;
+    std::vector<int> meetings_;  // Points of `curves_` where three legs meet.
     Sliced sliced_;
 };
 

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "geometry/foliation.h"
 #include "geometry/pants/tree_word.h"
 #include "geometry/pants/vertex_rings.h"
 #include "geometry/types.h"
@@ -15,7 +16,8 @@ namespace leafcutter::geometry {
 
 struct Piece {
     TriangleMesh mesh;
-    std::vector<int> source_vertex;  // Of the surface, or -1 on a cut.
+    std::vector<int> source_vertex;   // Of the surface, or -1 on a cut.
+    std::vector<int> critical_point;  // Of Sliced::critical_points, or -1 off the cuts.
     // The two boundary loops, surface to the left: at t = 0, then at t = the edge's weight.
     std::array<std::vector<int>, 2> loops;
 };
@@ -23,6 +25,7 @@ struct Piece {
 struct Sliced {
     std::vector<Piece> pieces;                  // Per graph edge.
     std::vector<Eigen::Vector3d> three_prongs;  // Where three legs meet.
+    std::vector<CriticalPoint> critical_points;
     // The critical graph: one curve from three-prong point to three-prong point each, or closed
     // (then the last point is the first).
     std::vector<std::vector<Eigen::Vector3d>> critical_arcs;

@@ -222,8 +222,8 @@ CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
     const LevelScale f_scale(chart, Axis::F, 0.0);
     const double own_slant = is_slanted(chart.shape) ? chart.shear / chart.height : 0.0;
     const LevelScale g_scale(chart, Axis::G, own_slant);
-    const Candidate chosen =
-        best_candidate(chart, f_scale.total_mm() / g_scale.total_mm(), wish, least);
+    const double aspect = f_scale.total_mm() / g_scale.total_mm();
+    const Candidate chosen = best_candidate(chart, aspect, wish, least);
     if (chosen.rows == 0) {
         throw Error(ErrorKind::BadOption, "odd-rows",
                     fmt::format("{}.rows: {} closes the rings of this torus with a fault in the "
@@ -236,6 +236,7 @@ CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
             .cols = chosen.cols,
             .column_shift = chosen.shift,
             .shear_deg = shear_deg(chart, chosen),
+            .stretch = aspect * chosen.cols / chosen.rows,
             .f_levels = f_scale.levels(chosen.rows),
             .g_levels = column_levels(chart, g_scale, chosen)};
 }

@@ -12,9 +12,11 @@
 #include "geometry/closest_point.h"
 #include "geometry/quads/cell_regions.h"
 #include "geometry/quads/chart_sampler.h"
+#include "geometry/quads/conforming_mesh.h"
 #include "geometry/quads/curvature_spacing.h"
 #include "geometry/quads/grid.h"
 #include "geometry/quads/half_sag.h"
+#include "geometry/quads/patch.h"
 #include "geometry/quads/quad_edges.h"
 #include "geometry/quads/quality.h"
 #include "geometry/surface_measures.h"
@@ -24,9 +26,6 @@ namespace leafcutter::geometry {
 namespace {
 
 using Eigen::Vector3d;
-
-// A region whose triangles cancel to less than this share of its area has no clear direction.
-constexpr double kClearDirection = 0.2;
 
 // Graded grids may come this much less close on average, if the largest distance falls.
 constexpr double kWorseMean = 1.2;
@@ -55,10 +54,6 @@ void check_options(const Foliation& foliation, const GridOptions& options) {
     if (options.even_cells) {
         refuse("grid.even_cells", "evening out cells is not built yet; use false");
     }
-    if (options.junctions == Junctions::Conforming && foliation.cylinders.size() > 1) {
-        refuse("grid.junctions",
-               "cylinders are not joined vertex by vertex yet; use \"independent\"");
-    }
 }
 
 GridWish wish_for(std::size_t cylinder, double area, const GridOptions& options) {
@@ -74,50 +69,6 @@ GridWish wish_for(std::size_t cylinder, double area, const GridOptions& options)
         }
     }
     return wish;
-}
-
-// The quads of one cylinder, with vertices numbered from 0.
-struct Patch {
-    std::vector<Vector3d> vertices;
-    std::vector<std::array<int, 4>> quads;
-};
-
-Patch sample_patch(const ChartGrid& grid, const ChartSampler& sampler, const Context& context) {
-    Patch patch;
-    for (int row = 0; row < grid.vertex_rows(); ++row) {
-        context.check();
-        const int end = grid.first_col(row) + grid.vertices_in(row);
-        for (int col = grid.first_col(row); col < end; ++col) {
-            patch.vertices.push_back(
-                sampler.point(grid.unstraight({grid.s_level(col), grid.f_level(row)})));
-        }
-    }
-    for (int row = 0; row < grid.grid().rows; ++row) {
-        for (int col = 0; col < grid.grid().cols; ++col) {
-            patch.quads.push_back({grid.vertex(row, col), grid.vertex(row, col + 1),
-                                   grid.vertex(row + 1, col + 1), grid.vertex(row + 1, col)});
-        }
-    }
-    return patch;
-}
-
-std::vector<SagCell> sag_cells(const Patch& patch,
-                               const CellRegions& regions,
-                               const ChartGrid& grid,
-                               const ChartSampler& sampler) {
-    std::vector<SagCell> cells;
-    cells.reserve(patch.quads.size());
-    for (int row = 0; row < grid.grid().rows; ++row) {
-        for (int col = 0; col < grid.grid().cols; ++col) {
-            const std::size_t at = cells.size();
-            const double s = 0.5 * (grid.s_level(col) + grid.s_level(col + 1));
-            const double f = 0.5 * (grid.f_level(row) + grid.f_level(row + 1));
-            cells.push_back({.corners = patch.quads[at],
-                             .surface_centre = sampler.point(grid.unstraight({s, f})),
-                             .surface_vector_area = regions.vector_area[at]});
-        }
-    }
-    return cells;
 }
 
 void check_topology(std::size_t cylinder, const ChartGrid& grid, const Patch& patch) {
@@ -137,27 +88,8 @@ void check_topology(std::size_t cylinder, const ChartGrid& grid, const Patch& pa
     }
 }
 
-void check_regions(std::size_t cylinder, const CellRegions& regions, double area) {
-    double sum = 0.0;
-    for (const double region : regions.area) {
-        sum += region;
-    }
-    if (std::abs(sum - area) > 1e-9 * area) {
-        throw Error(ErrorKind::SelfCheck, "quads-regions",
-                    fmt::format("quads: the cells of cylinder {} stand for {} mm2 of {} mm2",
-                                cylinder, sum, area));
-    }
-}
-
 void check_facing(std::size_t cylinder, const Patch& patch, const CellRegions& regions) {
-    std::size_t inverted = 0;
-    for (std::size_t i = 0; i < patch.quads.size(); ++i) {
-        const Vector3d& region = regions.vector_area[i];
-        if (region.norm() > kClearDirection * regions.area[i] &&
-            is_inverted(patch.vertices, patch.quads[i], region)) {
-            ++inverted;
-        }
-    }
+    const std::size_t inverted = count_inverted(patch, regions);
     if (inverted > 0) {
         throw Error(ErrorKind::SelfCheck, "quads-inverted",
                     fmt::format("quads: {} of {} quads of cylinder {} face inwards; use narrower "
@@ -275,6 +207,52 @@ void add_fine_enough(QuadMesh& mesh,
     }
 }
 
+void append_joined(QuadMesh& mesh, JoinedCylinder&& part) {
+    const int cylinder = static_cast<int>(mesh.grids.size());
+    for (std::size_t i = 0; i < part.quads.size(); ++i) {
+        mesh.quads.push_back(part.quads[i]);
+        mesh.addresses.push_back({.cylinder = cylinder,
+                                  .row = static_cast<int>(i) / part.grid.cols,
+                                  .col = static_cast<int>(i) % part.grid.cols});
+    }
+    mesh.surface_area.insert(mesh.surface_area.end(), part.surface_area.begin(),
+                             part.surface_area.end());
+    mesh.grids.push_back(std::move(part.grid));
+    mesh.charts[static_cast<std::size_t>(cylinder)] = std::move(part.chart);
+}
+
+// Rings that meet along arcs, or nothing.
+JoinedMesh join_rings(QuadMesh& mesh,
+                      const Foliation& foliation,
+                      const GridOptions& options,
+                      const Context& context) {
+    if (options.junctions == Junctions::Independent || foliation.cylinders.size() < 2) {
+        return {};
+    }
+    JoinedMesh joined = join_cylinders(foliation, options, context);
+    if (!joined.cylinders.empty()) {
+        mesh.vertices = std::move(joined.vertices);
+        mesh.charts = foliation.cylinders;
+        if (joined.folded > 0) {
+            mesh.warnings.push_back(
+                fmt::format("{} cells fold over at sharp edges of the model; crease them there, or "
+                            "smooth the model",
+                            joined.folded));
+        }
+        if (options.spacing != Spacing::Uniform) {
+            mesh.warnings.emplace_back(
+                "grid.spacing: cylinders that are joined have uniform spacing, as their columns "
+                "are shared");
+        }
+    }
+    if (foliation.mode == FoliationMode::OneForm) {
+        mesh.warnings.emplace_back(
+            "junctions: the rectangles of a one-form are woven one by one and glued; only rings "
+            "are joined cell by cell");
+    }
+    return joined;
+}
+
 }  // namespace
 
 QuadMesh build_quad_mesh(const Foliation& foliation,
@@ -282,7 +260,15 @@ QuadMesh build_quad_mesh(const Foliation& foliation,
                          const Context& context) {
     check_options(foliation, options);
     QuadMesh mesh;
+    JoinedMesh joined = join_rings(mesh, foliation, options, context);
+    std::size_t next_joined = 0;
     for (std::size_t i = 0; i < foliation.cylinders.size(); ++i) {
+        if (next_joined < joined.cylinders.size() &&
+            joined.cylinders[next_joined] == static_cast<int>(i)) {
+            append_joined(mesh, std::move(joined.parts[next_joined]));
+            ++next_joined;
+            continue;
+        }
         const Cylinder& chart = foliation.cylinders[i];
         context.check();
         const ChartSampler sampler(chart);

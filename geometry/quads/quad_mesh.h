@@ -59,8 +59,9 @@ struct CylinderGrid {
     // (0, j - column_shift). Pillowcase: vertex (rows, j) is vertex (rows, 2 column_shift - j), as
     // (0, j) is (0, -j).
     int column_shift = 0;
-    double shear_deg = 0.0;        // Angle by which the grid leaves orthogonality; 0 unless a torus
-                                   // or a pillowcase.
+    double shear_deg = 0.0;  // Angle by which the grid leaves orthogonality to close, or to
+                             // meet its neighbours: 0 if it does neither.
+    double stretch = 1.0;    // Mean height of its cells over their mean width, on the surface.
     std::vector<double> f_levels;  // rows + 1
     std::vector<double> g_levels;  // cols + 1
 };
@@ -71,15 +72,21 @@ struct QuadMesh {
     std::vector<QuadAddress> addresses;  // Per quad. Quads are sorted by (cylinder, row, col).
     std::vector<CylinderGrid> grids;     // Per cylinder.
 
+    // The charts that were sampled, where those of the foliation were changed so that columns go on
+    // from one into the next (Junctions::Conforming); else empty.
+    std::vector<Cylinder> charts;
+
     std::vector<std::string> warnings;
 
     // Per quad the area of the surface it stands for: the part of the chart inside its cell, mm².
     std::vector<double> surface_area;
 };
 
-// Samples the foliation's charts. Vertices are shared inside a cylinder.
+// Samples the foliation's charts. Vertices are shared inside a cylinder; with Junctions::Conforming
+// also between cylinders that are rings of one foliation by pants, along their critical leaves.
 //
-// Throws Error(BadOption) for an impossible count and Error(SelfCheck) where the grid is not
+// Throws Error(BadOption) for an impossible count, or strips too wide to go on from one cylinder
+// into the next (saying how wide they may be), and Error(SelfCheck) where the grid is not
 // manifold, or a quad is inverted.
 QuadMesh build_quad_mesh(const Foliation& foliation,
                          const GridOptions& options = {},

@@ -183,6 +183,7 @@ private:
 // What a set of quads shows at one vertex.
 struct VertexStar {
     double corner_deviation_sum = 0.0;
+    double angle_sum_deg = 0.0;
     int corners = 0;
     std::array<double, 4> angle_deg{};  // Of the corner a, b, c, d that a quad has here.
 
@@ -198,6 +199,10 @@ struct VertexStar {
         return regular && corners == 4 &&
                std::all_of(next.begin(), next.end(), [](int v) { return v >= 0; });
     }
+
+    // Three prongs or more: the corners share a full turn, whatever the leaves do.
+    bool is_singular() const { return !regular && corners >= 6; }
+    double mean_angle_deg() const { return angle_sum_deg / corners; }
 
     // How far the leaves turn within the surface: half of what the angles on their two sides differ
     // by. Corner a of a quad lies ahead of both leaves, b behind on the weft, d behind on the warp.
@@ -229,6 +234,7 @@ std::vector<VertexStar> collect_stars(const QuadMesh& mesh, std::span<const std:
             VertexStar& here = star(corners[i]);
             here.corner_deviation_sum += std::abs(angle - 90.0);
             here.angle_deg[i] = angle;
+            here.angle_sum_deg += angle;
             ++here.corners;
         }
         const auto [a, b, c, d] = corners;
@@ -255,6 +261,9 @@ void measure_vertices(const QuadMesh& mesh, std::span<const std::size_t> quads, 
             continue;
         }
         deviation.add(star.corner_deviation_sum / star.corners);
+        if (star.is_singular()) {
+            bound.add(std::abs(star.mean_angle_deg() - 90.0));
+        }
         if (!star.is_interior_crossing()) {
             continue;
         }

@@ -16,11 +16,13 @@ enum class Family { Weft, Warp };
 struct Thread {
     Family family = Family::Weft;
     bool closed = false;     // The last cell touches the first across the right edge.
-    std::vector<int> quads;  // In walking order: growing g for weft, growing f for warp.
+    std::vector<int> quads;  // In walking order: growing g for weft, growing f for warp, in the
+                             // cylinder where the whole run was begun.
+    int next = -1;           // The quad behind the last, where a critical leaf ends the thread.
 };
 
 enum class ThreadEnds {
-    AtCriticalLeaves,  // A thread ends where the cylinder ends.
+    AtCriticalLeaves,  // A thread ends where the cylinder ends; the next runs on the same way.
     Through,           // A thread goes on into the next cylinder where vertices are shared.
 };
 

@@ -131,19 +131,34 @@ TEST(Weave, PutsBothFamiliesOnOneSheetWhereTheyShareTheMaterial) {
     EXPECT_THAT(made.package.find("layout.json")->bytes, HasSubstr("\"family\":\"both\""));
 }
 
-TEST(Weave, WeavesSeveralCylindersOneByOneAndSaysSo) {
+std::size_t vertices_in(const std::string& quads) {
+    std::size_t count = 0;
+    for (std::size_t i = quads.find("\nv "); i != std::string::npos;
+         i = quads.find("\nv ", i + 1)) {
+        ++count;
+    }
+    return count;
+}
+
+TEST(Weave, GoesOnFromOneCylinderIntoTheNext) {
     const std::string model = geometry::write_obj(geometry::make_sample("double-torus", 3000));
-    const PackageSummary made = weave_text(model, small_job(), "double-torus.obj");
-    EXPECT_THAT(made.warnings, Contains(StartsWith("junctions: ")));
+    JobParams params = small_job();
+    params.grid.strip_width_mm = 5.0;
+    const PackageSummary made = weave_text(model, params, "double-torus.obj");
     const std::string& quads = made.package.find("quads.obj")->bytes;
     EXPECT_THAT(quads, HasSubstr("g cylinder_2\n"));  // 3g - 3 = 3 cylinders.
+    // Euler characteristic -2 of one closed mesh, with two edges to each quad.
+    EXPECT_EQ(vertices_in(quads), static_cast<std::size_t>(made.quads) - 2U);
+    EXPECT_THAT(made.package.find("weave.json")->bytes, HasSubstr("\"seams\":[]"));
+    EXPECT_THAT(made.package.find("guide.html")->bytes, HasSubstr("Cylinders meet cell by cell"));
     EXPECT_LT(number_behind(made.package.find("report.json")->bytes, "largest_deviation_relative"),
               1e-3);
-    JobParams independent = small_job();
-    independent.grid.junctions = geometry::Junctions::Independent;
-    const PackageSummary wanted = weave_text(model, independent, "double-torus.obj");
-    EXPECT_THAT(wanted.warnings, Not(Contains(StartsWith("junctions: "))));
-    EXPECT_EQ(wanted.package.find("quads.obj")->bytes, quads);
+    params.grid.junctions = geometry::Junctions::Independent;
+    const PackageSummary apart = weave_text(model, params, "double-torus.obj");
+    EXPECT_GT(vertices_in(apart.package.find("quads.obj")->bytes),
+              static_cast<std::size_t>(apart.quads));
+    EXPECT_THAT(apart.package.find("guide.html")->bytes,
+                Not(HasSubstr("Cylinders meet cell by cell")));
 }
 
 // Two models as one, the second moved aside by `shift`.
