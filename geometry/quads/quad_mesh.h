@@ -66,6 +66,27 @@ struct CylinderGrid {
     std::vector<double> g_levels;  // cols + 1
 };
 
+// What planarising reached and cost.
+struct PlanarisationPrice {
+    // As quality.h defines them, over the whole mesh, against the foliation's charts.
+    struct Figures {
+        double planarity_max_percent = 0.0;
+        double planarity_avg_percent = 0.0;
+        double angle_deviation_avg_deg = 0.0;
+        double surface_distance_max_percent = 0.0;
+        double surface_distance_avg_percent = 0.0;
+        double area_distortion_avg_percent = 0.0;
+    };
+    Planarity wanted = Planarity::Off;
+    bool reached = false;  // Full: every cell; Gentle: as far as its angle allows.
+    Figures before;
+    Figures after;
+    double cell_area_change_avg_percent = 0.0;  // Of a cell against itself before.
+    double largest_displacement_mm = 0.0;
+    double mean_displacement_mm = 0.0;
+    int iterations = 0;
+};
+
 struct QuadMesh {
     std::vector<Eigen::Vector3d> vertices;
     std::vector<std::array<int, 4>> quads;
@@ -77,6 +98,8 @@ struct QuadMesh {
     std::vector<Cylinder> charts;
 
     std::vector<std::string> warnings;
+
+    std::optional<PlanarisationPrice> planarisation;  // With GridOptions::planar.
 
     // Per quad the area of the surface it stands for: the part of the chart inside its cell, mm².
     std::vector<double> surface_area;
