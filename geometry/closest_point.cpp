@@ -308,4 +308,10 @@ double ClosestPoint::total_area() const {
     return tree_->area;
 }
 
+double ClosestPoint::diagonal() const {
+    assert(!tree_->nodes.empty());
+    const Box& box = tree_->nodes.front().box;
+    return (box.high - box.low).norm();
+}
+
 }  // namespace leafcutter::geometry

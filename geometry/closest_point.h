@@ -30,6 +30,7 @@ public:
     Hit query(const Eigen::Vector3d& point, int near_triangle) const;
 
     double total_area() const;
+    double diagonal() const;  // Of the bounding box.
 
 private:
     struct Tree;
