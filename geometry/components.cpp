@@ -1,6 +1,7 @@
 #include "geometry/components.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <string>
@@ -118,6 +119,7 @@ void append(std::vector<T>& to, std::vector<T>& from) {
 void append_part(Foliation& whole, Foliation part, const std::string& name) {
     const int edges = static_cast<int>(whole.graph.edges.size());
     const int points = static_cast<int>(whole.critical_points.size());
+    const int singular = static_cast<int>(whole.singularities.size());
     for (MetricGraph::Edge edge : part.graph.edges) {
         edge.from += whole.graph.nodes;
         edge.to += whole.graph.nodes;
@@ -136,7 +138,11 @@ void append_part(Foliation& whole, Foliation part, const std::string& name) {
     for (std::string& warning : part.warnings) {
         warning.insert(0, name);
     }
+    for (ReachedPoint& point : part.reached) {
+        point.singularity += point.singularity < 0 ? 0 : singular;
+    }
     append(whole.cylinders, part.cylinders);
+    append(whole.reached, part.reached);
     append(whole.singularities, part.singularities);
     append(whole.critical_graph, part.critical_graph);
     append(whole.critical_points, part.critical_points);
@@ -156,7 +162,9 @@ void check_names(const FoliationOptions& options, const std::vector<SurfacePart>
     if (options.poles) {
         check_together(parts, *options.poles, "poles");
     }
-    check_together(parts, options.near, "singularities");
+    for (const int vertex : options.near) {
+        check_together(parts, std::array{vertex}, "singularities");
+    }
     for (const std::vector<int>& loop : options.loops) {
         check_together(parts, loop, "loops");
     }
@@ -179,9 +187,9 @@ FoliationOptions options_of(const SurfacePart& part, const FoliationOptions& opt
     if (own.poles && !holds_any(part, *own.poles)) {
         own.poles.reset();
     }
-    if (!holds_any(part, own.near)) {
-        own.near.clear();
-    }
+    own.near.erase(
+        std::remove_if(own.near.begin(), own.near.end(), [&](int v) { return !holds(part, v); }),
+        own.near.end());
     own.loops.erase(
         std::remove_if(own.loops.begin(), own.loops.end(),
                        [&](const std::vector<int>& loop) { return !holds_any(part, loop); }),

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "geometry/cases/torus.h"
 #include "geometry/cell_spread.h"
 #include "geometry/check_foliation.h"
+#include "geometry/reached_points.h"
 #include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
@@ -185,6 +187,44 @@ Foliation dispatch(const SurfacePart& part,
     return foliate_pants(part.mesh, part.loops, options, context);
 }
 
+bool has_singular_points(FoliationMode mode) {
+    return mode == FoliationMode::Pants || mode == FoliationMode::OneForm ||
+           mode == FoliationMode::SpherePolar || mode == FoliationMode::SpherePillowcase;
+}
+
+void check_near(const SurfacePart& part, FoliationMode mode, const FoliationOptions& options) {
+    if (!options.near.empty() && !has_singular_points(mode)) {
+        throw Error(ErrorKind::BadOption, "no-singular-points",
+                    fmt::format("foliation.singularities: the model is {}, whose leaves in mode "
+                                "\"{}\" have no singular points; leave it out, or open holes with "
+                                "foliation.punctures",
+                                describe(part), name_of(mode)));
+    }
+}
+
+// The poles of a sphere are cut out: they are no singular points of what is left, but what is
+// wanted near places.
+std::vector<ReachedPoint> reached_of(const Foliation& foliation,
+                                     const SurfacePart& part,
+                                     std::span<const int> wanted,
+                                     const Context& context) {
+    std::vector<Eigen::Vector3d> points;
+    const bool is_polar = foliation.mode == FoliationMode::SpherePolar;
+    for (const Singularity& singularity : foliation.singularities) {
+        points.push_back(singularity.position);
+    }
+    for (const Puncture& pole : foliation.punctures) {
+        if (is_polar) {
+            points.push_back(part.mesh.positions[at(pole.vertex)]);
+        }
+    }
+    std::vector<ReachedPoint> reached = reached_points(part.mesh, wanted, points, context);
+    for (ReachedPoint& point : reached) {
+        point.singularity = is_polar ? -1 : point.singularity;
+    }
+    return reached;
+}
+
 // Back to the vertices of the surface the user gave.
 void restore_names(Foliation& foliation, const SurfacePart& part) {
     for (Cylinder& cylinder : foliation.cylinders) {
@@ -199,6 +239,9 @@ void restore_names(Foliation& foliation, const SurfacePart& part) {
     }
     for (Puncture& puncture : foliation.punctures) {
         puncture.vertex = part.source_vertex[at(puncture.vertex)];
+    }
+    for (ReachedPoint& point : foliation.reached) {
+        point.vertex = part.source_vertex[at(point.vertex)];
     }
 }
 
@@ -236,10 +279,15 @@ Foliation foliate_part(const SurfacePart& part,
                                    : fmt::format("; it needs {} hole{} more (foliation.punctures)",
                                                  needed, needed == 1 ? "" : "s")));
     }
-    Foliation foliation = dispatch(part, mode, translated(options, part), context);
+    check_near(part, mode, options);
+    const FoliationOptions own = translated(options, part);
+    Foliation foliation = dispatch(part, mode, own, context);
     foliation.mode = mode;
     foliation.spread = cell_spread(foliation.cylinders);
     check_foliation(foliation, part);
+    if (!own.near.empty()) {
+        foliation.reached = reached_of(foliation, part, own.near, context);
+    }
     restore_names(foliation, part);
     foliation.punctures.insert(foliation.punctures.begin(), part.punctures.begin(),
                                part.punctures.end());

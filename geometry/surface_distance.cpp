@@ -152,4 +152,17 @@ std::vector<SurfaceDistance::Reached> SurfaceDistance::from(
     return reached;
 }
 
+double distance_inside(const std::array<Eigen::Vector3d, 3>& corners,
+                       const std::array<double, 3>& distances,
+                       const Eigen::Vector3d& point) {
+    double reached = kFar;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t next = (k + 1) % 3;
+        reached = std::min(
+            {reached, distances[k] + (corners[k] - point).norm(),
+             through_edge({corners[k], distances[k]}, {corners[next], distances[next]}, point)});
+    }
+    return reached;
+}
+
 }  // namespace leafcutter::geometry

@@ -6,9 +6,12 @@
 
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "geometry/types.h"
 
@@ -42,5 +45,10 @@ private:
     std::vector<double> distance_;  // Infinite between calls.
     std::vector<char> is_final_;    // 0 between calls.
 };
+
+// The distance of a point of a triangle whose corners' distances from one source are known.
+double distance_inside(const std::array<Eigen::Vector3d, 3>& corners,
+                       const std::array<double, 3>& distances,
+                       const Eigen::Vector3d& point);
 
 }  // namespace leafcutter::geometry

@@ -14,6 +14,7 @@
 #include "geometry/pants/coarse_maps.h"
 #include "geometry/pants/hierarchy.h"
 #include "geometry/pants/prepare_surface.h"
+#include "geometry/pants/near_points.h"
 #include "geometry/pants/slice.h"
 #include "geometry/pants/split_long_edges.h"
 #include "geometry/parallel.h"
@@ -263,6 +264,10 @@ std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
             if (error.kind() != ErrorKind::SelfCheck) {
                 throw;
             }
+        if (!options.near.empty()) {
+            maps = nearest_maps(hierarchy, std::move(maps),
+                                {options.near, options.weights.has_value()}, context);
+        }
             failures.push_back(fmt::format("{}: {}", maps[i].name, error.what()));
         }
     }

@@ -388,4 +388,15 @@ std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
     return all;
 }
 
+CoarseMap with_other_weights(const Hierarchy::Level& level,
+                             const CoarseMap& start,
+                             const std::vector<double>& weights,
+                             const Context& context) {
+    GraphMap map = start.map;
+    set_weights(map, weights);
+    CoarseMap solved = solve_one(level, std::move(map), MapStart::Warm, context);
+    solved.name = start.name;
+    return solved;
+}
+
 }  // namespace leafcutter::geometry

@@ -39,4 +39,11 @@ std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
                                       const CoarseOptions& options,
                                       const Context& context);
 
+// The same map with other weights, one for each graph edge, solved again from where it is. `level` is
+// the coarsest.
+CoarseMap with_other_weights(const Hierarchy::Level& level,
+                             const CoarseMap& start,
+                             const std::vector<double>& weights,
+                             const Context& context);
+
 }  // namespace leafcutter::geometry

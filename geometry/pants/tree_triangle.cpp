@@ -29,18 +29,21 @@ Word joined(const Word& ab, const Word& ac, std::size_t shared) {
 
 }  // namespace
 
+int shared_darts(const Word& ab, const Word& bc, const Word& ac) {
+    const auto same = std::mismatch(ab.begin(), ab.end(), ac.begin(), ac.end()).first - ab.begin();
+    for (int shared = same > 0 ? 1 : 0; shared <= same; ++shared) {
+        if (joined(ab, ac, static_cast<std::size_t>(shared)) == bc) {
+            return shared;
+        }
+    }
+    return -1;
+}
+
 bool words_fit(const Word& ab, const Word& bc, const Word& ac) {
     if (ab.empty() || ac.empty()) {
         return bc == (ab.empty() ? ac : reversed(ab));
     }
-    const auto same = std::mismatch(ab.begin(), ab.end(), ac.begin(), ac.end()).first - ab.begin();
-    const std::size_t least = same > 0 ? 1 : 0;
-    for (std::size_t shared = least; shared <= static_cast<std::size_t>(same); ++shared) {
-        if (joined(ab, ac, shared) == bc) {
-            return true;
-        }
-    }
-    return false;
+    return shared_darts(ab, bc, ac) >= 0;
 }
 
 int find_misfit(const GraphMap& map, const VertexRings& rings) {

@@ -11,6 +11,10 @@ namespace leafcutter::geometry {
 // point, or lie on one line.
 bool words_fit(const Word& ab, const Word& bc, const Word& ac);
 
+// How many darts the ways a-b and a-c, neither of them empty, have in common before they branch;
+// -1 if the three don't fit.
+int shared_darts(const Word& ab, const Word& bc, const Word& ac);
+
 // A triangle whose words don't fit, or -1.
 int find_misfit(const GraphMap& map, const VertexRings& rings);
 
