@@ -217,10 +217,43 @@ Foliation rectangle_of(const FormPart& part,
     }
 }
 
+// Names the vertices on flanks, by which neighbouring parts know their common side. Returns the
+// names by vertices of the cut surface, -1 elsewhere.
+std::vector<int> name_flanks(Foliation& foliation,
+                             const CutSurface& cut,
+                             const std::vector<FormPart>& parts) {
+    std::vector<int> names(cut.surface.mesh.positions.size(), -1);
+    const auto name = [&](int v) {
+        if (names[at(v)] < 0) {
+            names[at(v)] = static_cast<int>(foliation.critical_points.size());
+            foliation.critical_points.push_back({cut.surface.mesh.positions[at(v)], 2});
+        }
+    };
+    for (const FormPart& part : parts) {
+        const int count = static_cast<int>(part.loop.size());
+        for (const std::size_t begin : {std::size_t{1}, std::size_t{3}}) {
+            const int end = part.corners[(begin + 1) % 4];
+            for (int i = part.corners[begin]; i != end; i = (i + 1) % count) {
+                name(part.source_vertex[at(part.loop[at(i)])]);
+            }
+            name(part.source_vertex[at(part.loop[at(end)])]);
+        }
+    }
+    for (const FormZero& zero : cut.zeros) {
+        if (names[at(zero.vertex)] >= 0) {
+            const bool natural = (cut.surface.lines[at(zero.vertex)] & NaturalLoop) != 0;
+            foliation.critical_points[at(names[at(zero.vertex)])].prongs =
+                zero.lines + (natural ? 2 : 0);
+        }
+    }
+    return names;
+}
+
 // The chart of one part. Along seams f is held at the whole surface's: rows of neighbouring parts
 // meet.
 Foliation chart_of(const CutSurface& cut,
                    const FormPart& part,
+                   const std::vector<int>& names,
                    const FoliationOptions& options,
                    const Context& context) {
     std::vector<double> f;
@@ -229,8 +262,11 @@ Foliation chart_of(const CutSurface& cut,
         f.push_back(cut.f[at(v)]);
     }
     Foliation chart = rectangle_of(part, {part.loop, part.corners, f}, options, context);
-    for (int& source : chart.cylinders.front().source_vertex) {
-        source = source < 0 ? -1 : cut.surface.source_vertex[at(part.source_vertex[at(source)])];
+    Cylinder& cylinder = chart.cylinders.front();
+    for (int& source : cylinder.source_vertex) {
+        const int v = source < 0 ? -1 : part.source_vertex[at(source)];
+        cylinder.critical_point.push_back(v < 0 ? -1 : names[at(v)]);
+        source = v < 0 ? -1 : cut.surface.source_vertex[at(v)];
     }
     return chart;
 }
@@ -240,9 +276,10 @@ void add_charts(Foliation& foliation,
                 const FoliationOptions& options,
                 const Context& context) {
     const std::vector<FormPart> parts = separate_parts(cut);
+    const std::vector<int> names = name_flanks(foliation, cut, parts);
     std::vector<Foliation> charts(parts.size());
     for_each_task(parts.size(), context, [&](std::size_t k, const Context& own) {
-        charts[k] = chart_of(cut, parts[k], options, own);
+        charts[k] = chart_of(cut, parts[k], names, options, own);
     });
     for (std::size_t k = 0; k < charts.size(); ++k) {
         for (const std::string& warning : charts[k].warnings) {

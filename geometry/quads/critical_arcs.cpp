@@ -61,7 +61,8 @@ public:
 
     ArcNetwork run() {
         for (std::size_t c = 0; c < foliation_.cylinders.size(); ++c) {
-            if (foliation_.cylinders[c].critical_point.empty()) {
+            if (foliation_.cylinders[c].shape != ChartShape::Annulus ||
+                foliation_.cylinders[c].critical_point.empty()) {
                 continue;
             }
             network_.cylinders.push_back(static_cast<int>(c));

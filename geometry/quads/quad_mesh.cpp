@@ -13,6 +13,7 @@
 #include "geometry/quads/cell_regions.h"
 #include "geometry/quads/chart_sampler.h"
 #include "geometry/quads/conforming_mesh.h"
+#include "geometry/quads/conforming_rectangles.h"
 #include "geometry/quads/curvature_spacing.h"
 #include "geometry/quads/grid.h"
 #include "geometry/quads/half_sag.h"
@@ -221,15 +222,16 @@ void append_joined(QuadMesh& mesh, JoinedCylinder&& part) {
     mesh.charts[static_cast<std::size_t>(cylinder)] = std::move(part.chart);
 }
 
-// Rings that meet along arcs, or nothing.
+// Cylinders that meet along critical leaves, or nothing.
 JoinedMesh join_rings(QuadMesh& mesh,
                       const Foliation& foliation,
                       const GridOptions& options,
                       const Context& context) {
-    if (options.junctions == Junctions::Independent || foliation.cylinders.size() < 2) {
+    if (options.junctions == Junctions::Independent) {
         return {};
     }
     JoinedMesh joined = join_cylinders(foliation, options, context);
+    merge_joined(joined, join_rectangles(foliation, options, context));
     if (!joined.cylinders.empty()) {
         mesh.vertices = std::move(joined.vertices);
         mesh.charts = foliation.cylinders;
@@ -244,11 +246,6 @@ JoinedMesh join_rings(QuadMesh& mesh,
                 "grid.spacing: cylinders that are joined have uniform spacing, as their columns "
                 "are shared");
         }
-    }
-    if (foliation.mode == FoliationMode::OneForm) {
-        mesh.warnings.emplace_back(
-            "junctions: the rectangles of a one-form are woven one by one and glued; only rings "
-            "are joined cell by cell");
     }
     return joined;
 }

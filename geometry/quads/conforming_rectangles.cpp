@@ -1,0 +1,451 @@
+#include "geometry/quads/conforming_rectangles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/harmonic/bijectivity.h"
+#include "geometry/harmonic/chart_map.h"
+#include "geometry/intrinsic_delaunay.h"
+#include "geometry/laplacian.h"
+#include "geometry/parallel.h"
+#include "geometry/quads/critical_sides.h"
+#include "geometry/quads/patch.h"
+#include "geometry/quads/quad_edges.h"
+#include "geometry/quads/rectangle_counts.h"
+#include "geometry/quads/rectangle_rows.h"
+#include "geometry/surface_measures.h"
+
+namespace leafcutter::geometry {
+namespace {
+
+using Eigen::Vector3d;
+
+// More cells than asked for by this part is another strip width: refused, not done.
+constexpr double kMostExcess = 1.1;
+constexpr int kMostSizes = 20;
+// From a size where quads would face inwards to the next.
+constexpr double kFiner = 1.25;
+constexpr double kMostRefined = 4.0;
+constexpr double kFoldedShare = 0.005;
+
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
+[[noreturn]] void fail(const char* what) {
+    throw Error(ErrorKind::SelfCheck, "quads-topology", fmt::format("quads: {}", what));
+}
+
+// What is known before any mesh is made.
+struct Plan {
+    const Foliation& foliation;
+    const SideNetwork& network;
+    const RectangleCounts& counts;
+    const RectangleRows& rows;
+};
+
+// f as it is to be on the flanks.
+std::vector<double> bent_flank(const Plan& plan, const Flank& flank) {
+    std::vector<double> levels;
+    for (std::size_t u = 0; u < flank.uses.size(); ++u) {
+        const CriticalSide& side = plan.network.sides[at(flank.uses[u].side)];
+        const std::size_t last =
+            u + 1 < flank.uses.size() ? flank.uses[u + 1].first : flank.vertices.size();
+        for (std::size_t i = flank.uses[u].first; i < last; ++i) {
+            levels.push_back(plan.rows.bent(side, flank.f[i]));
+        }
+    }
+    return levels;
+}
+
+// The rectangle with f changed by the harmonic function that brings its flanks to their levels. g
+// stays.
+Cylinder bend_chart(const Plan& plan, int cylinder, const Context& context) {
+    const Cylinder& chart = plan.foliation.cylinders[at(cylinder)];
+    const auto& flanks = plan.network.flanks[at(cylinder)];
+    const auto& ends = plan.network.ends[at(cylinder)];
+    ChartMap map = reopen_chart(chart);
+    std::vector<char> held(map.gf.size(), 0);
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held.size()));
+    for (const Flank& flank : flanks) {
+        const std::vector<double> levels = bent_flank(plan, flank);
+        for (std::size_t i = 0; i < levels.size(); ++i) {
+            held[at(flank.vertices[i])] = 1;
+            values[flank.vertices[i]] = levels[i] - map.gf[at(flank.vertices[i])].y();
+        }
+    }
+    for (const std::vector<int>& end : ends) {
+        for (const int v : end) {
+            held[at(v)] = 1;
+            values[v] = 0.0;
+        }
+    }
+    const std::vector<WeightedEdge> edges =
+        cotangent_edges(intrinsic_delaunay(map.mesh, map.edges));
+    const Eigen::VectorXd more = HarmonicSolver(edges, held).solve(std::move(values));
+    for (std::size_t v = 0; v < map.gf.size(); ++v) {
+        map.gf[v].y() += more[static_cast<Eigen::Index>(v)];
+    }
+    make_bijective(map,
+                   {{ends[0], 0, false},
+                    {flanks[SideNetwork::Right].vertices, 1, false},
+                    {ends[1], 0, false},
+                    {flanks[SideNetwork::Left].vertices, 1, false}},
+                   context);
+    Cylinder out = chart;
+    out.corner_gf = finish_cylinder(std::move(map)).corner_gf;
+    return out;
+}
+
+// By how much rows climb from one flank to the other, at most.
+double slant_deg(const Plan& plan, int cylinder) {
+    double least = 0.0;
+    double most = 0.0;
+    for (std::size_t which = 0; which < 2; ++which) {
+        for (const SideUse& use : plan.network.flanks[at(cylinder)][which].uses) {
+            const CriticalSide& side = plan.network.sides[at(use.side)];
+            const double lift = plan.rows.bent(side, side.f.front()) - side.f.front();
+            const double signed_lift = which == SideNetwork::Right ? lift : -lift;
+            least = std::min(least, signed_lift);
+            most = std::max(most, signed_lift);
+        }
+    }
+    const double width = plan.foliation.cylinders[at(cylinder)].width;
+    return std::atan((most - least) / width) * 180.0 / std::numbers::pi;
+}
+
+CylinderGrid grid_of(const Plan& plan, const Cylinder& chart, int cylinder) {
+    const LevelScale f_scale(chart, Axis::F, 0.0);
+    const LevelScale g_scale(chart, Axis::G, 0.0);
+    const int cols = plan.counts.cols[at(cylinder)];
+    std::vector<double> levels = plan.rows.levels(cylinder);
+    const int rows = static_cast<int>(levels.size()) - 1;
+    return {.shape = ChartShape::Rectangle,
+            .rows = rows,
+            .cols = cols,
+            .column_shift = 0,
+            .shear_deg = slant_deg(plan, cylinder),
+            .stretch = f_scale.total_mm() / rows / (g_scale.total_mm() / cols),
+            .f_levels = std::move(levels),
+            .g_levels = g_scale.levels(cols)};
+}
+
+// A rectangle's own grid, before its vertices are shared.
+struct Piece {
+    Cylinder chart;
+    CylinderGrid grid;
+    Patch patch;
+    CellRegions regions;
+    std::vector<SagCell> cells;
+};
+
+Piece make_piece(const Plan& plan, int cylinder, const Context& context) {
+    Piece piece;
+    piece.chart = bend_chart(plan, cylinder, context);
+    piece.grid = grid_of(plan, piece.chart, cylinder);
+    const ChartGrid grid(piece.chart, piece.grid);
+    const ChartSampler sampler(piece.chart);
+    piece.patch = sample_patch(grid, sampler, context);
+    piece.regions = cut_regions(piece.chart, grid);
+    check_regions(at(cylinder), piece.regions, surface_area(piece.chart.mesh));
+    piece.cells = sag_cells(piece.patch, piece.regions, grid, sampler);
+    return piece;
+}
+
+// Numbers of the vertices on flanks.
+class SharedVertices {
+public:
+    explicit SharedVertices(const Plan& plan) : plan_(plan) {
+        first_.assign(plan.network.sides.size(), -1);
+        rows_.assign(plan.network.sides.size(), 0);
+        for (const int c : plan.network.cylinders) {
+            const std::vector<double> levels = plan.rows.levels(c);
+            for (const Flank& flank : plan.network.flanks[at(c)]) {
+                for (const SideUse& use : flank.uses) {
+                    add_side(c, use.side, levels);
+                }
+            }
+        }
+    }
+
+    const std::vector<Vector3d>& positions() const { return positions_; }
+    const std::map<int, int>& stops() const { return stops_; }
+
+    // Of a flank's rows, from the lower loop to the upper.
+    std::vector<int> along(const Flank& flank) const {
+        std::vector<int> vertices;
+        for (const SideUse& use : flank.uses) {
+            const CriticalSide& side = plan_.network.sides[at(use.side)];
+            vertices.push_back(stops_.at(side.points.front()));
+            for (int k = 1; k < rows_[at(use.side)]; ++k) {
+                vertices.push_back(first_[at(use.side)] + k - 1);
+            }
+        }
+        const CriticalSide& last = plan_.network.sides[at(flank.uses.back().side)];
+        vertices.push_back(stops_.at(last.points.back()));
+        return vertices;
+    }
+
+private:
+    void add_side(int cylinder, int number, const std::vector<double>& levels) {
+        const CriticalSide& side = plan_.network.sides[at(number)];
+        const int low = plan_.network.zero_of(side.points.front());
+        const int high = plan_.network.zero_of(side.points.back());
+        const int below = low < 0 ? 0 : plan_.rows.rows_below(cylinder, low);
+        const int rows = plan_.rows.rows_below(cylinder, high) - below;
+        if (first_[at(number)] >= 0) {
+            if (rows != rows_[at(number)]) {
+                fail("the rows of neighbouring rectangles don't match");
+            }
+            return;
+        }
+        if (rows < 1) {
+            fail("two zeros on one side share a row");
+        }
+        add_stop(side.points.front());
+        add_stop(side.points.back());
+        first_[at(number)] = static_cast<int>(positions_.size());
+        rows_[at(number)] = rows;
+        for (int k = 1; k < rows; ++k) {
+            positions_.push_back(
+                point_on(side, plan_.foliation, plan_.rows.unbent(side, levels[at(below + k)])));
+        }
+    }
+
+    void add_stop(int point) {
+        if (stops_.emplace(point, static_cast<int>(positions_.size())).second) {
+            positions_.push_back(plan_.foliation.critical_points[at(point)].position);
+        }
+    }
+
+    const Plan& plan_;
+    std::vector<Vector3d> positions_;
+    std::map<int, int> stops_;  // Critical point to vertex: zeros, and ends of sides at loops.
+    std::vector<int> first_;    // Per side its first inner vertex.
+    std::vector<int> rows_;     // Per side.
+};
+
+// Gives a piece's vertices their numbers in the whole.
+void number_piece(const Plan& plan,
+                  const SharedVertices& shared,
+                  int cylinder,
+                  Piece& piece,
+                  std::vector<Vector3d>& vertices) {
+    const auto& flanks = plan.network.flanks[at(cylinder)];
+    const ChartGrid grid(piece.chart, piece.grid);
+    const std::vector<int> left = shared.along(flanks[SideNetwork::Left]);
+    const std::vector<int> right = shared.along(flanks[SideNetwork::Right]);
+    std::vector<int> number(piece.patch.vertices.size(), -1);
+    for (int row = 0; row <= piece.grid.rows; ++row) {
+        number[at(grid.vertex(row, 0))] = left.at(at(row));
+        number[at(grid.vertex(row, piece.grid.cols))] = right.at(at(row));
+        for (int col = 1; col < piece.grid.cols; ++col) {
+            number[at(grid.vertex(row, col))] = static_cast<int>(vertices.size());
+            vertices.push_back(piece.patch.vertices[at(grid.vertex(row, col))]);
+        }
+    }
+    for (std::size_t i = 0; i < piece.patch.quads.size(); ++i) {
+        for (int& corner : piece.patch.quads[i]) {
+            corner = number[at(corner)];
+        }
+        piece.cells[i].corners = piece.patch.quads[i];
+    }
+}
+
+// Edges that only one quad has: at sources, sinks and natural loops.
+int open_edges(const Plan& plan) {
+    int edges = 0;
+    for (const int c : plan.network.cylinders) {
+        edges += 2 * plan.counts.cols[at(c)];
+        for (const Flank& flank : plan.network.flanks[at(c)]) {
+            for (const SideUse& use : flank.uses) {
+                const CriticalSide& side = plan.network.sides[at(use.side)];
+                if (side.left < 0 || side.right < 0) {
+                    const int low = plan.network.zero_of(side.points.front());
+                    const int high = plan.network.zero_of(side.points.back());
+                    edges += plan.rows.rows_below(c, high) -
+                             (low < 0 ? 0 : plan.rows.rows_below(c, low));
+                }
+            }
+        }
+    }
+    return edges;
+}
+
+// What theory says: every edge between two quads but those on loops, Euler characteristic by the
+// zeros' prongs, four quads round every vertex inside but twice its prongs round a zero.
+void check_whole(const Plan& plan, const SharedVertices& shared, const JoinedMesh& mesh) {
+    std::vector<std::array<int, 4>> quads;
+    for (const JoinedCylinder& part : mesh.parts) {
+        quads.insert(quads.end(), part.quads.begin(), part.quads.end());
+    }
+    std::vector<int> wanted(mesh.vertices.size(), 4);
+    int doubled = 0;
+    for (const FormZeroPlace& zero : plan.network.zeros) {
+        const int prongs = plan.foliation.critical_points[at(zero.point)].prongs;
+        wanted[at(shared.stops().at(zero.point))] = 2 * prongs;
+        doubled += prongs - 2;
+    }
+    const QuadNeighbours found = find_neighbours(quads);
+    std::vector<int> valence(mesh.vertices.size(), 0);
+    for (std::size_t q = 0; q < quads.size(); ++q) {
+        for (std::size_t side = 0; side < 4; ++side) {
+            ++valence[at(quads[q][side])];
+            if (found.across[q][side].quad < 0) {  // Two quads meet at each boundary vertex.
+                ++valence[at(quads[q][side])];
+                ++valence[at(quads[q][(side + 1) % 4])];
+            }
+        }
+    }
+    const int euler =
+        static_cast<int>(mesh.vertices.size()) - found.edges + static_cast<int>(quads.size());
+    const int open = open_edges(plan);
+    if (found.faults != 0 || found.boundary_edges != open || 2 * euler != -doubled ||
+        valence != wanted) {
+        throw Error(ErrorKind::SelfCheck, "quads-topology",
+                    fmt::format("quads: joined rectangles have {} faulty edges, Euler "
+                                "characteristic {} instead of {} and {} boundary edges instead of "
+                                "{}, or wrong valences",
+                                found.faults, euler, -doubled / 2, found.boundary_edges, open));
+    }
+}
+
+JoinedMesh build(const Plan& plan, const GridOptions& options, const Context& context) {
+    std::vector<Piece> pieces(plan.network.cylinders.size());
+    for_each_task(pieces.size(), context, [&](std::size_t i, const Context& own) {
+        pieces[i] = make_piece(plan, plan.network.cylinders[i], own);
+    });
+    JoinedMesh mesh;
+    mesh.cylinders = plan.network.cylinders;
+    const SharedVertices shared(plan);
+    mesh.vertices = shared.positions();
+    std::vector<SagCell> cells;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        number_piece(plan, shared, plan.network.cylinders[i], pieces[i], mesh.vertices);
+        cells.insert(cells.end(), pieces[i].cells.begin(), pieces[i].cells.end());
+    }
+    if (options.half_sag_offset) {
+        offset_by_half_sag(mesh.vertices, cells);
+    }
+    for (Piece& piece : pieces) {
+        mesh.folded += count_inverted({mesh.vertices, piece.patch.quads}, piece.regions);
+        mesh.parts.push_back({.chart = std::move(piece.chart),
+                              .grid = std::move(piece.grid),
+                              .quads = std::move(piece.patch.quads),
+                              .surface_area = std::move(piece.regions.area)});
+    }
+    check_whole(plan, shared, mesh);
+    return mesh;
+}
+
+RectangleWish wish_of(const Foliation& foliation, const GridOptions& options, double area) {
+    RectangleWish wish;
+    wish.cells = area / (options.strip_width_mm * options.strip_width_mm);
+    wish.parity = options.parity;
+    wish.counts.assign(foliation.cylinders.size(), options.all);
+    wish.paths.assign(foliation.cylinders.size(), "grid");
+    for (std::size_t c = 0; c < options.per_cylinder.size(); ++c) {
+        const RowsCols& own = options.per_cylinder[c];
+        if (own.rows || own.cols) {
+            wish.counts[c] = own;
+            wish.paths[c] = fmt::format("grid.cylinders[{}]", c);
+        }
+    }
+    return wish;
+}
+
+// Two digits more than a ruler shows, downwards: so wide is still all right.
+double rounded_down(double width) {
+    const double digit = std::pow(10.0, std::floor(std::log10(width)) - 3.0);
+    return std::floor(width / digit) * digit;
+}
+
+[[noreturn]] void refuse_width(const GridOptions& options, double area, int quads, int tightest) {
+    throw Error(ErrorKind::BadOption, "strips-too-wide",
+                fmt::format("grid.strip_width_mm: strips of {:.4g} mm are too wide to go on from "
+                            "one rectangle into the next, most of all in cylinder {}; use at most "
+                            "{:.4g} mm (about {} quads), or grid.junctions \"independent\"",
+                            options.strip_width_mm, tightest, rounded_down(std::sqrt(area / quads)),
+                            quads));
+}
+
+}  // namespace
+
+void merge_joined(JoinedMesh& mesh, JoinedMesh&& more) {
+    const int base = static_cast<int>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+    mesh.folded += more.folded;
+    for (std::size_t i = 0; i < more.parts.size(); ++i) {
+        for (std::array<int, 4>& quad : more.parts[i].quads) {
+            for (int& corner : quad) {
+                corner += base;
+            }
+        }
+        const auto place =
+            std::lower_bound(mesh.cylinders.begin(), mesh.cylinders.end(), more.cylinders[i]) -
+            mesh.cylinders.begin();
+        mesh.cylinders.insert(mesh.cylinders.begin() + place, more.cylinders[i]);
+        mesh.parts.insert(mesh.parts.begin() + place, std::move(more.parts[i]));
+    }
+}
+
+JoinedMesh join_rectangles(const Foliation& foliation,
+                           const GridOptions& options,
+                           const Context& context) {
+    const SideNetwork network = find_sides(foliation);
+    if (network.cylinders.empty()) {
+        return {};
+    }
+    double area = 0.0;
+    for (const int c : network.cylinders) {
+        area += surface_area(foliation.cylinders[at(c)].mesh);
+    }
+    const RectangleCounter counter(foliation, network, wish_of(foliation, options, area));
+    double size = counter.wanted_cells();
+    int tightest = -1;
+    std::optional<JoinedMesh> folded;  // The first, if only a few of its quads face inwards.
+    double most = 0.0;                 // Cells, once there are enough of them for the topology.
+    for (int tries = 0; tries < kMostSizes && (most == 0.0 || size < most); ++tries) {
+        RectangleCounts counts = counter.choose(size, context);
+        tightest = tightest < 0 ? counts.tightest : tightest;
+        if (!counter.has_fixed_counts() && counts.cells > kMostExcess * size) {
+            size = counts.cells;
+            continue;
+        }
+        most = most > 0.0 ? most : kMostRefined * size;
+        const RectangleRows rows(network, counter, counts);
+        JoinedMesh mesh = build({foliation, network, counts, rows}, options, context);
+        if (mesh.folded == 0) {
+            if (size > counter.wanted_cells()) {
+                refuse_width(options, area, static_cast<int>(std::lround(size)), tightest);
+            }
+            return mesh;
+        }
+        if (size <= counter.wanted_cells() &&
+            static_cast<double>(mesh.folded) <= std::max(1.0, kFoldedShare * counts.cells)) {
+            folded = std::move(mesh);
+        }
+        if (counter.has_fixed_counts()) {
+            break;
+        }
+        size *= kFiner;
+    }
+    if (folded) {
+        return std::move(*folded);
+    }
+    throw Error(ErrorKind::SelfCheck, "quads-inverted",
+                "quads: too many face inwards where rectangles are joined; use narrower strips "
+                "(grid.strip_width_mm), or grid.junctions \"independent\"");
+}
+
+}  // namespace leafcutter::geometry
