@@ -10,11 +10,12 @@
 #include <fmt/format.h>
 
 #include "geometry/cases/annulus.h"
+#include "geometry/cases/whole_columns.h"
 #include "geometry/laplacian.h"
 #include "geometry/pants/coarse_maps.h"
 #include "geometry/pants/hierarchy.h"
-#include "geometry/pants/prepare_surface.h"
 #include "geometry/pants/near_points.h"
+#include "geometry/pants/prepare_surface.h"
 #include "geometry/pants/slice.h"
 #include "geometry/pants/split_long_edges.h"
 #include "geometry/parallel.h"
@@ -237,6 +238,21 @@ void add_alternatives(Foliation& foliation,
     }
 }
 
+// Solved again with weights that suit the grid, where that is better.
+Foliation suit_junctions(Foliation foliation,
+                         const Hierarchy& hierarchy,
+                         const CoarseMap& coarse,
+                         const FoliationOptions& options,
+                         const Context& context) {
+    const auto refoliate = [&](const GraphMap& map) {
+        CoarseMap other;
+        other.map = map;
+        return assemble(carry_up(hierarchy, other, context), options, context);
+    };
+    return with_whole_columns(std::move(foliation), hierarchy.levels.back(), coarse.map, options,
+                              refoliate, context);
+}
+
 // The first candidate of this hierarchy that passes all checks. What others failed with goes into
 // `failures`.
 std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
@@ -248,6 +264,10 @@ std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
     try {
         maps = solve_coarsest(hierarchy,
                               {options.pants, options.function, options.weights, attempt}, context);
+        if (!options.near.empty()) {
+            maps = nearest_maps(hierarchy, std::move(maps),
+                                {options.near, options.weights.has_value()}, context);
+        }
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::SelfCheck) {
             throw;
@@ -258,16 +278,16 @@ std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
     for (std::size_t i = 0; i < std::min(maps.size(), kMostCandidates); ++i) {
         try {
             Foliation foliation = assemble(carry_up(hierarchy, maps[i], context), options, context);
+            if (options.junctions) {
+                foliation =
+                    suit_junctions(std::move(foliation), hierarchy, maps[i], options, context);
+            }
             add_alternatives(foliation, maps, i);
             return foliation;
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::SelfCheck) {
                 throw;
             }
-        if (!options.near.empty()) {
-            maps = nearest_maps(hierarchy, std::move(maps),
-                                {options.near, options.weights.has_value()}, context);
-        }
             failures.push_back(fmt::format("{}: {}", maps[i].name, error.what()));
         }
     }

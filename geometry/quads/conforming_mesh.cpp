@@ -17,6 +17,7 @@
 #include "geometry/quads/junction_counts.h"
 #include "geometry/quads/patch.h"
 #include "geometry/quads/quad_edges.h"
+#include "geometry/quads/relaxed_arcs.h"
 #include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
@@ -308,7 +309,8 @@ JoinedMesh join_cylinders(const Foliation& foliation,
             continue;
         }
         most = most > 0.0 ? most : kMostRefined * size;
-        JoinedMesh mesh = build(foliation, network, counts, options, context);
+        const ArcNetwork arcs = relax_arcs(foliation, network, counts, context);
+        JoinedMesh mesh = build(foliation, arcs, counts, options, context);
         if (mesh.folded == 0) {
             if (size > counter.wanted_cells()) {
                 refuse_width(options, area, static_cast<int>(std::lround(size)), tightest);

@@ -244,6 +244,7 @@ JunctionCounts JunctionCounter::choose(double cells, const Context& context) con
                     "some of grid.cols open, or use independent junctions");
     }
     check_fixed(best->counts);
+    best->counts.distortion = best->score;
     return std::move(best->counts);
 }
 

@@ -27,9 +27,10 @@ struct JunctionCounts {
     std::vector<int> twist;    // Columns by which the upper end's first vertex is aside.
     std::vector<double> slip;  // By how many columns a leaf of F* is off at the other end.
     int cells = 0;
-    int misfits = 0;     // Cylinders whose fixed rows have the wrong parity.
-    bool proven = true;  // No other numbers on arcs suit their lengths better.
-    int tightest = -1;   // The cylinder with most cells beyond its share.
+    int misfits = 0;          // Cylinders whose fixed rows have the wrong parity.
+    bool proven = true;       // No other numbers on arcs suit their lengths better.
+    int tightest = -1;        // The cylinder with most cells beyond its share.
+    double distortion = 0.0;  // Mean square slant and stretch of cells, about; less is better.
 };
 
 // Along the end's vertices the number of columns from the first; the last is the circumference.
