@@ -52,9 +52,6 @@ geometry::RowsCols read_rows_cols(ObjectReader& reader) {
 }
 
 void refuse_later_grids(const ObjectReader& reader, const geometry::GridOptions& grid) {
-    if (grid.planar != geometry::Planarity::Off) {
-        refuse_unsupported(reader.path_of("planar"), name_of(kPlanarities, grid.planar));
-    }
     if (grid.even_cells) {
         refuse_unsupported(reader.path_of("even_cells"), "even cells");
     }

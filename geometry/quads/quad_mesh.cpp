@@ -18,6 +18,7 @@
 #include "geometry/quads/grid.h"
 #include "geometry/quads/half_sag.h"
 #include "geometry/quads/patch.h"
+#include "geometry/quads/planarise.h"
 #include "geometry/quads/quad_edges.h"
 #include "geometry/quads/quality.h"
 #include "geometry/surface_measures.h"
@@ -48,9 +49,6 @@ void check_options(const Foliation& foliation, const GridOptions& options) {
         throw Error(ErrorKind::BadOption, "too-many-cylinders",
                     fmt::format("grid.cylinders: has {} entries, but the surface has {} cylinders",
                                 options.per_cylinder.size(), foliation.cylinders.size()));
-    }
-    if (options.planar != Planarity::Off) {
-        refuse("grid.planar", "planarisation is not built yet; use \"off\"");
     }
     if (options.even_cells) {
         refuse("grid.even_cells", "evening out cells is not built yet; use false");
@@ -274,6 +272,7 @@ QuadMesh build_quad_mesh(const Foliation& foliation,
         context.check();
         add_fine_enough(mesh, work, wish_for(i, work.area, options), options, context);
     }
+    planarise(mesh, foliation, options.planar, context);
     return mesh;
 }
 

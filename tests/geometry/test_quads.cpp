@@ -315,9 +315,6 @@ TEST(QuadMesh, RefusesWidthsThatMakeNoSense) {
 TEST(QuadMesh, SaysByPathWhatIsNotBuiltYet) {
     const Foliation square = testing::flat_rectangle(100.0, 100.0);
     GridOptions options;
-    options.planar = Planarity::Full;
-    EXPECT_EQ(refusal(square, options, ErrorKind::NotSupported).find("grid.planar"), 0U);
-    options = {};
     options.even_cells = true;
     EXPECT_EQ(refusal(square, options, ErrorKind::NotSupported).find("grid.even_cells"), 0U);
 }

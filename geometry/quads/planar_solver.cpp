@@ -1,0 +1,212 @@
+#include "geometry/quads/planar_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "geometry/parallel.h"
+
+namespace leafcutter::geometry {
+
+namespace {
+
+using Eigen::Vector3d;
+using Vertices = std::vector<Vector3d>;
+
+// No vertex goes further in one step, in cells.
+constexpr double kLongestStep = 0.3;
+
+// Cells may not come below, nor those that lie below already get worse.
+constexpr double kSmallestSine = 0.02;
+constexpr double kSmallestStretch = 0.1;
+
+constexpr int kHalvings = 7;        // Of the whole step, until the energy falls.
+constexpr int kLocalHalvings = 6;   // Of the steps around a spoiled cell, before they are nought.
+constexpr int kLocalAttempts = 12;  // With nought more.
+constexpr double kDescent = 1e-5;
+constexpr double kDamping = 1e-8;
+
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
+// The equations of one cell.
+struct CellPart {
+    Eigen::Matrix<double, 12, 12> block;
+    Eigen::Matrix<double, 12, 1> gradient;
+};
+
+}  // namespace
+
+PlanarSolver::PlanarSolver(const QuadMesh& mesh,
+                           const TriangleMesh& surface,
+                           const Context& context)
+    : mesh_(mesh),
+      context_(context),
+      anchors_(mesh, surface),
+      state_{.vertices = mesh.vertices, .pull = std::vector<double>(mesh.quads.size(), 0.0)},
+      blocks_(mesh.vertices.size(), mesh.quads) {
+    for (std::size_t cell = 0; cell < mesh.quads.size(); ++cell) {
+        start_.push_back(corners_of(cell, mesh.vertices));
+    }
+}
+
+CellCorners PlanarSolver::corners_of(std::size_t cell, const Vertices& vertices) const {
+    const auto& quad = mesh_.quads[cell];
+    return {vertices[at(quad[0])], vertices[at(quad[1])], vertices[at(quad[2])],
+            vertices[at(quad[3])]};
+}
+
+PlanarSolver::Bend PlanarSolver::bend_of_cells(const Vertices& vertices) const {
+    Bend bend;
+    for (std::size_t cell = 0; cell < mesh_.quads.size(); ++cell) {
+        const double own = std::abs(bend_of(corners_of(cell, vertices)));
+        bend.largest = std::max(bend.largest, own);
+        bend.mean += own / static_cast<double>(mesh_.quads.size());
+    }
+    return bend;
+}
+
+void PlanarSolver::raise_pulls(double weight) {
+    for (std::size_t cell = 0; cell < mesh_.quads.size(); ++cell) {
+        state_.pull[cell] += weight * weight * bend_of(corners_of(cell, state_.vertices));
+    }
+}
+
+void PlanarSolver::assemble(double weight) {
+    std::vector<CellPart> parts(mesh_.quads.size());
+    for_each_index(parts.size(), context_, [&](std::size_t cell) {
+        CellResidual residual;
+        CellJacobian jacobian;
+        cell_rows(start_[cell], corners_of(cell, state_.vertices),
+                  {.weight = weight, .pull = state_.pull[cell]}, residual, &jacobian);
+        parts[cell].block.noalias() = jacobian.transpose() * jacobian;
+        parts[cell].gradient.noalias() = jacobian.transpose() * residual;
+    });
+    blocks_.clear();
+    gradient_.setZero(static_cast<Eigen::Index>(3 * state_.vertices.size()));
+    for (std::size_t v = 0; v < state_.vertices.size(); ++v) {
+        const double size = anchors_.size(v);
+        const Eigen::Matrix3d damping = Eigen::Matrix3d::Identity() * (kDamping / (size * size));
+        Vector3d gradient = Vector3d::Zero();
+        blocks_.add_vertex(v, damping);
+        for (const Anchor* anchor : {&anchors_.held(v), &anchors_.start(v)}) {
+            blocks_.add_vertex(v, anchor->weight);
+            gradient += anchor->weight * (state_.vertices[v] - anchor->place);
+        }
+        gradient_.segment<3>(static_cast<Eigen::Index>(3 * v)) = gradient;
+    }
+    for (std::size_t cell = 0; cell < parts.size(); ++cell) {
+        blocks_.add_cell(cell, parts[cell].block);
+        for (std::size_t i = 0; i < 4; ++i) {
+            gradient_.segment<3>(3 * mesh_.quads[cell][i]) +=
+                parts[cell].gradient.segment<3>(static_cast<Eigen::Index>(3 * i));
+        }
+    }
+}
+
+double PlanarSolver::energy(const Vertices& vertices, double weight) const {
+    std::vector<double> of_cell(mesh_.quads.size(), 0.0);
+    for_each_index(of_cell.size(), context_, [&](std::size_t cell) {
+        CellResidual residual;
+        cell_rows(start_[cell], corners_of(cell, vertices),
+                  {.weight = weight, .pull = state_.pull[cell]}, residual, nullptr);
+        of_cell[cell] = residual.squaredNorm();
+    });
+    double sum = 0.0;
+    for (const double part : of_cell) {
+        sum += part;
+    }
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        for (const Anchor* anchor : {&anchors_.held(v), &anchors_.start(v)}) {
+            const Vector3d away = vertices[v] - anchor->place;
+            sum += away.dot(anchor->weight * away);
+        }
+    }
+    return sum;
+}
+
+std::vector<char> PlanarSolver::spoiled(const Vertices& vertices) const {
+    std::vector<char> of_cell(mesh_.quads.size(), 0);
+    for_each_index(of_cell.size(), context_, [&](std::size_t cell) {
+        const CellCorners now = corners_of(cell, vertices);
+        const CellCorners before = corners_of(cell, state_.vertices);
+        const double sine = std::min(kSmallestSine, smallest_sine(before));
+        const double stretch = std::min(kSmallestStretch, smallest_stretch(start_[cell], before));
+        of_cell[cell] = static_cast<char>(smallest_sine(now) < sine ||
+                                          smallest_stretch(start_[cell], now) < stretch);
+    });
+    return of_cell;
+}
+
+bool PlanarSolver::is_sound(const Vertices& vertices) const {
+    for (std::size_t cell = 0; cell < mesh_.quads.size(); ++cell) {
+        const CellCorners now = corners_of(cell, vertices);
+        if (smallest_sine(now) < std::min(0.0, smallest_sine(start_[cell]))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// The steps of Gauss-Newton, cut to length one by one, and shorter around cells they would spoil.
+Vertices PlanarSolver::safe_steps() {
+    if (factor_) {
+        factor_->refactor(blocks_.matrix());
+    } else {
+        factor_.emplace(blocks_.matrix());
+    }
+    context_.check();
+    const Eigen::VectorXd solution = factor_->solve(gradient_);
+    Vertices steps(state_.vertices.size());
+    longest_ = 0.0;
+    for (std::size_t v = 0; v < steps.size(); ++v) {
+        steps[v] = -solution.segment<3>(static_cast<Eigen::Index>(3 * v));
+        const double length = steps[v].norm() / anchors_.size(v);
+        longest_ = std::max(longest_, length);
+        steps[v] *= std::min(1.0, kLongestStep / std::max(length, 1e-300));
+    }
+    Vertices moved(steps.size());
+    for (int attempt = 0; attempt < kLocalAttempts; ++attempt) {
+        for (std::size_t v = 0; v < steps.size(); ++v) {
+            moved[v] = state_.vertices[v] + steps[v];
+        }
+        const std::vector<char> cells = spoiled(moved);
+        std::vector<char> shorten(steps.size(), 0);
+        for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+            for (const int vertex : mesh_.quads[cell]) {
+                shorten[at(vertex)] |= cells[cell];
+            }
+        }
+        if (std::none_of(shorten.begin(), shorten.end(), [](char own) { return own != 0; })) {
+            break;
+        }
+        for (std::size_t v = 0; v < steps.size(); ++v) {
+            if (shorten[v] != 0) {
+                steps[v] *= attempt < kLocalHalvings ? 0.5 : 0.0;
+            }
+        }
+    }
+    return steps;
+}
+
+PlanarSolver::Step PlanarSolver::step(double weight) {
+    anchors_.update(state_.vertices, context_);
+    assemble(weight);
+    const Vertices steps = safe_steps();
+    const double before = energy(state_.vertices, weight);
+    Vertices moved(steps.size());
+    double part = 1.0;
+    for (int halving = 0; halving < kHalvings; ++halving, part *= 0.5) {
+        for (std::size_t v = 0; v < steps.size(); ++v) {
+            moved[v] = state_.vertices[v] + part * steps[v];
+        }
+        if (energy(moved, weight) < before * (1.0 - kDescent * part)) {
+            state_.vertices = std::move(moved);
+            return {.wanted = longest_, .taken = part};
+        }
+    }
+    return {.wanted = longest_, .taken = 0.0};
+}
+
+}  // namespace leafcutter::geometry
