@@ -61,17 +61,20 @@ private:
     std::vector<bool> taken_;
 };
 
-// Whether a critical leaf lies between two neighbours in a thread: they are in different cylinders,
-// or at the two ends of one that meets itself.
+// Whether a critical leaf of F lies between two neighbours in a warp thread: they are in different
+// cylinders, or at the two ends of one that meets itself. Weft threads run along F and cross none.
 bool leaf_between(const QuadMesh& mesh, Family family, int quad, int next) {
     const QuadAddress& one = mesh.addresses[static_cast<std::size_t>(quad)];
     const QuadAddress& other = mesh.addresses[static_cast<std::size_t>(next)];
+    if (family == Family::Weft) {
+        return false;
+    }
     if (one.cylinder != other.cylinder) {
         return true;
     }
     const auto cylinder = static_cast<std::size_t>(one.cylinder);
-    return family == Family::Warp && cylinder < mesh.grids.size() &&
-           mesh.grids[cylinder].shape == ChartShape::Annulus && std::abs(one.row - other.row) != 1;
+    return cylinder < mesh.grids.size() && mesh.grids[cylinder].shape == ChartShape::Annulus &&
+           std::abs(one.row - other.row) != 1;
 }
 
 // The parts of a thread between critical leaves.

@@ -22,8 +22,8 @@ struct Thread {
 };
 
 enum class ThreadEnds {
-    AtCriticalLeaves,  // A thread ends where the cylinder ends; the next runs on the same way.
-    Through,           // A thread goes on into the next cylinder where vertices are shared.
+    AtCriticalLeaves,  // A warp thread ends at critical leaves of F; the next runs on the same way.
+    Through,           // It goes on into the next cylinder where vertices are shared.
 };
 
 // All threads of a family, ordered by their smallest quad index. Follows shared edges only, so that
