@@ -143,17 +143,17 @@ Crossing crossing_of(const CellCorners& at) {
 }
 
 void planar_row(const CellCorners& at,
-                const PlanarityRow& planarity,
+                const CellWishes& wishes,
                 CellResidual& residual,
                 CellJacobian* jacobian) {
     const Crossing crossing = crossing_of(at);
-    if (crossing.flat || planarity.weight <= 0.0) {
+    if (crossing.flat || wishes.planarity <= 0.0) {
         return;
     }
     residual[kPlanarRow] =
-        planarity.weight * crossing.gap / crossing.diagonal + planarity.pull / planarity.weight;
+        wishes.planarity * crossing.gap / crossing.diagonal + wishes.pull / wishes.planarity;
     if (jacobian != nullptr) {
-        const Vector3d normal = planarity.weight / crossing.diagonal * crossing.normal;
+        const Vector3d normal = wishes.planarity / crossing.diagonal * crossing.normal;
         add_gradient(*jacobian, kPlanarRow, 0, -(1.0 - crossing.on_ac) * normal);
         add_gradient(*jacobian, kPlanarRow, 1, (1.0 - crossing.on_bd) * normal);
         add_gradient(*jacobian, kPlanarRow, 2, -crossing.on_ac * normal);
@@ -165,7 +165,7 @@ void planar_row(const CellCorners& at,
 
 void cell_rows(const CellCorners& start,
                const CellCorners& corners,
-               const PlanarityRow& planarity,
+               const CellWishes& wishes,
                CellResidual& residual,
                CellJacobian* jacobian) {
     residual.setZero();
@@ -176,8 +176,12 @@ void cell_rows(const CellCorners& start,
         angle_row(corners, i, residual, jacobian);
         length_row(start, corners, i, residual, jacobian);
     }
+    residual.head<kFairRows>() *= wishes.firmness;
+    if (jacobian != nullptr) {
+        jacobian->topRows<kFairRows>() *= wishes.firmness;
+    }
     fair_rows(start, corners, residual, jacobian);
-    planar_row(corners, planarity, residual, jacobian);
+    planar_row(corners, wishes, residual, jacobian);
 }
 
 double bend_of(const CellCorners& corners) {

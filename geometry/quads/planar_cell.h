@@ -16,15 +16,16 @@ inline constexpr int kCellRows = 21;
 using CellResidual = Eigen::Matrix<double, kCellRows, 1>;
 using CellJacobian = Eigen::Matrix<double, kCellRows, 12>;  // By a, b, c, d.
 
-struct PlanarityRow {
-    double weight = 0.0;  // Of the distance between the diagonals over their mean length.
-    double pull = 0.0;    // Multiplier of the constraint "planar": augmented Lagrangian.
+struct CellWishes {
+    double planarity = 0.0;  // Weight of the distance between the diagonals over their mean length.
+    double pull = 0.0;       // Multiplier of the constraint "planar": augmented Lagrangian.
+    double firmness = 1.0;   // Of angles and lengths, more where a cell would collapse.
 };
 
 // Fills `residual`, and `jacobian` unless it is null.
 void cell_rows(const CellCorners& start,
                const CellCorners& corners,
-               const PlanarityRow& planarity,
+               const CellWishes& wishes,
                CellResidual& residual,
                CellJacobian* jacobian);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "geometry/parallel.h"
 
@@ -20,21 +21,33 @@ constexpr double kLongestStep = 0.3;
 constexpr double kSmallestSine = 0.02;
 constexpr double kSmallestStretch = 0.1;
 
+// Below these they become firmer with every step.
+constexpr double kWeakSine = 0.1;
+constexpr double kWeakStretch = 0.2;
+constexpr double kFirming = 1.5;
+constexpr double kFirmest = 300.0;
+
 constexpr int kHalvings = 7;        // Of the whole step, until the energy falls.
 constexpr int kLocalHalvings = 6;   // Of the steps around a spoiled cell, before they are nought.
 constexpr int kLocalAttempts = 12;  // With nought more.
 constexpr double kDescent = 1e-5;
-constexpr double kDamping = 1e-8;
+
+// Levenberg's damping, vertex by vertex: up around cells that don't do what their equations say,
+// down again afterwards.
+constexpr double kLeastDamping = 1e-8;
+constexpr double kFirstDamping = 1.0;
+constexpr double kMostDamping = 1e6;
+constexpr double kDampingGrowth = 10.0;
+constexpr double kDampingDecay = 0.3;
+constexpr double kNearWorst = 0.1;  // Cells with an error of that part of the worst are damped.
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-// The equations of one cell.
-struct CellPart {
-    Eigen::Matrix<double, 12, 12> block;
-    Eigen::Matrix<double, 12, 1> gradient;
-};
+double sum_of(const std::vector<double>& parts) {
+    return std::accumulate(parts.begin(), parts.end(), 0.0);
+}
 
 }  // namespace
 
@@ -44,8 +57,12 @@ PlanarSolver::PlanarSolver(const QuadMesh& mesh,
     : mesh_(mesh),
       context_(context),
       anchors_(mesh, surface),
-      state_{.vertices = mesh.vertices, .pull = std::vector<double>(mesh.quads.size(), 0.0)},
-      blocks_(mesh.vertices.size(), mesh.quads) {
+      state_{.vertices = mesh.vertices,
+             .pull = std::vector<double>(mesh.quads.size(), 0.0),
+             .firmness = std::vector<double>(mesh.quads.size(), 1.0)},
+      blocks_(mesh.vertices.size(), mesh.quads),
+      parts_(mesh.quads.size()),
+      damping_(mesh.vertices.size(), kLeastDamping) {
     for (std::size_t cell = 0; cell < mesh.quads.size(); ++cell) {
         start_.push_back(corners_of(cell, mesh.vertices));
     }
@@ -74,20 +91,20 @@ void PlanarSolver::raise_pulls(double weight) {
 }
 
 void PlanarSolver::assemble(double weight) {
-    std::vector<CellPart> parts(mesh_.quads.size());
-    for_each_index(parts.size(), context_, [&](std::size_t cell) {
+    for_each_index(parts_.size(), context_, [&](std::size_t cell) {
         CellResidual residual;
         CellJacobian jacobian;
-        cell_rows(start_[cell], corners_of(cell, state_.vertices),
-                  {.weight = weight, .pull = state_.pull[cell]}, residual, &jacobian);
-        parts[cell].block.noalias() = jacobian.transpose() * jacobian;
-        parts[cell].gradient.noalias() = jacobian.transpose() * residual;
+        cell_rows(start_[cell], corners_of(cell, state_.vertices), wishes_of(cell, weight),
+                  residual, &jacobian);
+        parts_[cell].block.noalias() = jacobian.transpose() * jacobian;
+        parts_[cell].gradient.noalias() = jacobian.transpose() * residual;
+        parts_[cell].energy = residual.squaredNorm();
     });
     blocks_.clear();
     gradient_.setZero(static_cast<Eigen::Index>(3 * state_.vertices.size()));
     for (std::size_t v = 0; v < state_.vertices.size(); ++v) {
         const double size = anchors_.size(v);
-        const Eigen::Matrix3d damping = Eigen::Matrix3d::Identity() * (kDamping / (size * size));
+        const Eigen::Matrix3d damping = Eigen::Matrix3d::Identity() * (damping_[v] / (size * size));
         Vector3d gradient = Vector3d::Zero();
         blocks_.add_vertex(v, damping);
         for (const Anchor* anchor : {&anchors_.held(v), &anchors_.start(v)}) {
@@ -96,27 +113,28 @@ void PlanarSolver::assemble(double weight) {
         }
         gradient_.segment<3>(static_cast<Eigen::Index>(3 * v)) = gradient;
     }
-    for (std::size_t cell = 0; cell < parts.size(); ++cell) {
-        blocks_.add_cell(cell, parts[cell].block);
+    for (std::size_t cell = 0; cell < parts_.size(); ++cell) {
+        blocks_.add_cell(cell, parts_[cell].block);
         for (std::size_t i = 0; i < 4; ++i) {
             gradient_.segment<3>(3 * mesh_.quads[cell][i]) +=
-                parts[cell].gradient.segment<3>(static_cast<Eigen::Index>(3 * i));
+                parts_[cell].gradient.segment<3>(static_cast<Eigen::Index>(3 * i));
         }
     }
 }
 
-double PlanarSolver::energy(const Vertices& vertices, double weight) const {
-    std::vector<double> of_cell(mesh_.quads.size(), 0.0);
-    for_each_index(of_cell.size(), context_, [&](std::size_t cell) {
+std::vector<double> PlanarSolver::cell_energies(const Vertices& vertices, double weight) const {
+    std::vector<double> energies(mesh_.quads.size(), 0.0);
+    for_each_index(energies.size(), context_, [&](std::size_t cell) {
         CellResidual residual;
-        cell_rows(start_[cell], corners_of(cell, vertices),
-                  {.weight = weight, .pull = state_.pull[cell]}, residual, nullptr);
-        of_cell[cell] = residual.squaredNorm();
+        cell_rows(start_[cell], corners_of(cell, vertices), wishes_of(cell, weight), residual,
+                  nullptr);
+        energies[cell] = residual.squaredNorm();
     });
+    return energies;
+}
+
+double PlanarSolver::anchor_energy(const Vertices& vertices) const {
     double sum = 0.0;
-    for (const double part : of_cell) {
-        sum += part;
-    }
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         for (const Anchor* anchor : {&anchors_.held(v), &anchors_.start(v)}) {
             const Vector3d away = vertices[v] - anchor->place;
@@ -124,6 +142,53 @@ double PlanarSolver::energy(const Vertices& vertices, double weight) const {
         }
     }
     return sum;
+}
+
+void PlanarSolver::damp_cell(std::size_t cell) {
+    for (const int vertex : mesh_.quads[cell]) {
+        double& damping = damping_[at(vertex)];
+        damping = std::clamp(kDampingGrowth * damping, kFirstDamping, kMostDamping);
+    }
+}
+
+void PlanarSolver::firm_up_weak_cells() {
+    for (std::size_t cell = 0; cell < mesh_.quads.size(); ++cell) {
+        const CellCorners now = corners_of(cell, state_.vertices);
+        const bool thin = smallest_stretch(start_[cell], now) < kWeakStretch;
+        const bool concave = smallest_sine(now) < std::min(kWeakSine, smallest_sine(start_[cell]));
+        if (thin || concave) {
+            double& firmness = state_.firmness[cell];
+            firmness = std::min(kFirming * firmness, kFirmest);
+        }
+    }
+}
+
+void PlanarSolver::relax_damping() {
+    for (double& damping : damping_) {
+        damping = std::max(kDampingDecay * damping, kLeastDamping);
+    }
+}
+
+// Damps the cells whose energy after the steps is most above what their equations promised.
+void PlanarSolver::damp_where_bent(const Vertices& steps, const std::vector<double>& energies) {
+    std::vector<double> errors(energies.size(), 0.0);
+    double worst = 0.0;
+    for (std::size_t cell = 0; cell < energies.size(); ++cell) {
+        Eigen::Matrix<double, 12, 1> step;
+        for (std::size_t i = 0; i < 4; ++i) {
+            step.segment<3>(static_cast<Eigen::Index>(3 * i)) = steps[at(mesh_.quads[cell][i])];
+        }
+        const CellPart& part = parts_[cell];
+        const double promised =
+            part.energy + 2.0 * part.gradient.dot(step) + step.dot(part.block * step);
+        errors[cell] = energies[cell] - promised;
+        worst = std::max(worst, errors[cell]);
+    }
+    for (std::size_t cell = 0; cell < errors.size(); ++cell) {
+        if (errors[cell] > 0.0 && errors[cell] >= kNearWorst * worst) {
+            damp_cell(cell);
+        }
+    }
 }
 
 std::vector<char> PlanarSolver::spoiled(const Vertices& vertices) const {
@@ -174,8 +239,14 @@ Vertices PlanarSolver::safe_steps() {
         const std::vector<char> cells = spoiled(moved);
         std::vector<char> shorten(steps.size(), 0);
         for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+            if (cells[cell] == 0) {
+                continue;
+            }
             for (const int vertex : mesh_.quads[cell]) {
-                shorten[at(vertex)] |= cells[cell];
+                shorten[at(vertex)] = 1;
+            }
+            if (attempt == 0) {
+                damp_cell(cell);
             }
         }
         if (std::none_of(shorten.begin(), shorten.end(), [](char own) { return own != 0; })) {
@@ -192,16 +263,25 @@ Vertices PlanarSolver::safe_steps() {
 
 PlanarSolver::Step PlanarSolver::step(double weight) {
     anchors_.update(state_.vertices, context_);
+    firm_up_weak_cells();
     assemble(weight);
+    relax_damping();
     const Vertices steps = safe_steps();
-    const double before = energy(state_.vertices, weight);
+    const double before =
+        sum_of(cell_energies(state_.vertices, weight)) + anchor_energy(state_.vertices);
     Vertices moved(steps.size());
     double part = 1.0;
     for (int halving = 0; halving < kHalvings; ++halving, part *= 0.5) {
         for (std::size_t v = 0; v < steps.size(); ++v) {
             moved[v] = state_.vertices[v] + part * steps[v];
         }
-        if (energy(moved, weight) < before * (1.0 - kDescent * part)) {
+        const std::vector<double> energies = cell_energies(moved, weight);
+        const bool lower =
+            sum_of(energies) + anchor_energy(moved) < before * (1.0 - kDescent * part);
+        if (halving == 0 && !lower) {
+            damp_where_bent(steps, energies);
+        }
+        if (lower) {
             state_.vertices = std::move(moved);
             return {.wanted = longest_, .taken = part};
         }

@@ -22,7 +22,8 @@ class PlanarSolver {
 public:
     struct State {
         std::vector<Eigen::Vector3d> vertices;
-        std::vector<double> pull;  // Per cell the multiplier of its planarity.
+        std::vector<double> pull;      // Per cell the multiplier of its planarity.
+        std::vector<double> firmness;  // Per cell, more where it would collapse.
     };
     struct Step {
         double wanted = 0.0;  // The longest step of a vertex before it was cut, in cells.
@@ -54,11 +55,27 @@ public:
     bool is_sound(const std::vector<Eigen::Vector3d>& vertices) const;
 
 private:
+    // The equations of one cell, and its energy.
+    struct CellPart {
+        Eigen::Matrix<double, 12, 12> block;
+        Eigen::Matrix<double, 12, 1> gradient;
+        double energy = 0.0;
+    };
     CellCorners corners_of(std::size_t cell, const std::vector<Eigen::Vector3d>& vertices) const;
     void assemble(double weight);
     std::vector<Eigen::Vector3d> safe_steps();
     std::vector<char> spoiled(const std::vector<Eigen::Vector3d>& vertices) const;
-    double energy(const std::vector<Eigen::Vector3d>& vertices, double weight) const;
+    std::vector<double> cell_energies(const std::vector<Eigen::Vector3d>& vertices,
+                                      double weight) const;
+    double anchor_energy(const std::vector<Eigen::Vector3d>& vertices) const;
+    void damp_where_bent(const std::vector<Eigen::Vector3d>& steps,
+                         const std::vector<double>& energies);
+    void damp_cell(std::size_t cell);
+    void firm_up_weak_cells();
+    CellWishes wishes_of(std::size_t cell, double weight) const {
+        return {.planarity = weight, .pull = state_.pull[cell], .firmness = state_.firmness[cell]};
+    }
+    void relax_damping();
 
     const QuadMesh& mesh_;
     const Context& context_;
@@ -66,7 +83,9 @@ private:
     std::vector<CellCorners> start_;
     State state_;
     CellBlocks blocks_;
+    std::vector<CellPart> parts_;
     Eigen::VectorXd gradient_;
+    std::vector<double> damping_;  // Per vertex, against its size.
     std::optional<SparseSolver> factor_;
     double longest_ = 0.0;
 };

@@ -121,7 +121,7 @@ public:
                 continue;
             }
             waited = 0;
-            if (weight >= kLastWeight) {
+            if (weight >= kLastWeight && step.taken > 0.0) {
                 solver_.raise_pulls(weight);
             }
             weight = std::min(kGrowth * weight, kLastWeight);
