@@ -204,6 +204,27 @@ json qualities_json(const geometry::QualityReport& report) {
     return {{"overall", quality_json(report.overall)}, {"cylinders", std::move(cylinders)}};
 }
 
+json planar_figures_json(const geometry::PlanarisationPrice::Figures& figures) {
+    return {{"planarity_percent",
+             {{"max", figures.planarity_max_percent}, {"avg", figures.planarity_avg_percent}}},
+            {"angle_deviation_deg", {{"avg", figures.angle_deviation_avg_deg}}},
+            {"surface_distance_percent",
+             {{"max", figures.surface_distance_max_percent},
+              {"avg", figures.surface_distance_avg_percent}}},
+            {"area_distortion_percent", {{"avg", figures.area_distortion_avg_percent}}}};
+}
+
+json planarisation_json(const geometry::PlanarisationPrice& price) {
+    return {{"wanted", price.wanted == geometry::Planarity::Full ? "full" : "gentle"},
+            {"reached", price.reached},
+            {"before", planar_figures_json(price.before)},
+            {"after", planar_figures_json(price.after)},
+            {"cell_area_change_percent", {{"avg", price.cell_area_change_avg_percent}}},
+            {"displacement_mm",
+             {{"max", price.largest_displacement_mm}, {"avg", price.mean_displacement_mm}}},
+            {"iterations", price.iterations}};
+}
+
 json family_json(const JobResult& job, Family family) {
     const FamilyTotals totals = total_of(job, family);
     return {{"material", job.material_of(family).id},
@@ -289,18 +310,21 @@ std::string report_json(const JobResult& job) {
     for (const std::string& warning : job.warnings) {
         warnings.push_back(warning);
     }
-    const json file = {{"format", "leafcutter-report/1"},
-                       {"input", input_json(job.input)},
-                       {"surface", surface_json(job)},
-                       {"topology", topology_json(job)},
-                       {"foliation", foliation_json(job)},
-                       {"quality", qualities_json(job.quality)},
-                       {"strips", strips_summary_json(job)},
-                       {"nesting", nesting_json(job.layout)},
-                       {"cut", cut_json(job)},
-                       {"timings_s", std::move(timings)},
-                       {"certificate", certificate_json(job.certificate)},
-                       {"warnings", std::move(warnings)}};
+    json file = {{"format", "leafcutter-report/1"},
+                 {"input", input_json(job.input)},
+                 {"surface", surface_json(job)},
+                 {"topology", topology_json(job)},
+                 {"foliation", foliation_json(job)},
+                 {"quality", qualities_json(job.quality)},
+                 {"strips", strips_summary_json(job)},
+                 {"nesting", nesting_json(job.layout)},
+                 {"cut", cut_json(job)},
+                 {"timings_s", std::move(timings)},
+                 {"certificate", certificate_json(job.certificate)},
+                 {"warnings", std::move(warnings)}};
+    if (job.quads.planarisation) {
+        file["quality"]["planarisation"] = planarisation_json(*job.quads.planarisation);
+    }
     check_finite(file, "");
     return file.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
