@@ -32,7 +32,12 @@ struct Rule {
     double order = 1.0;
     double exponent = 0.5;
 };
-constexpr std::array<Rule, 4> kRules{{{4.0, 0.5}, {4.0, 1.0 / 3.0}, {1.0, 0.5}, {1.0, 1.0 / 3.0}}};
+constexpr std::array<Rule, 6> kRules{{{4.0, 0.5},
+                                      {4.0, 1.0 / 3.0},
+                                      {4.0, 1.0 / 6.0},
+                                      {1.0, 0.5},
+                                      {1.0, 1.0 / 3.0},
+                                      {1.0, 1.0 / 6.0}}};
 
 // Bending across the strips of one family at one sample of the surface.
 struct Bending {
@@ -204,25 +209,24 @@ std::vector<double> regraded(const std::vector<double>& levels,
 
 }  // namespace
 
-std::vector<CylinderGrid> curvature_grids(const Cylinder& chart,
-                                          const CylinderGrid& even,
-                                          const ChartSampler& sampler,
-                                          Spacing spacing) {
+CurvatureLevels curvature_levels(const Cylinder& chart,
+                                 const CylinderGrid& even,
+                                 const ChartSampler& sampler,
+                                 Spacing spacing) {
     const SampledChart sampled(chart, even, sampler);
-    std::vector<CylinderGrid> grids;
+    CurvatureLevels levels;
     for (const Rule& rule : kRules) {
-        CylinderGrid grid = even;
-        grid.f_levels = regraded(even.f_levels, densities(sampled, Axis::F, rule, spacing));
+        levels.rows.push_back(regraded(even.f_levels, densities(sampled, Axis::F, rule, spacing)));
         // Columns that are shifted into one another stay even.
         if (even.column_shift == 0) {
-            grid.g_levels = regraded(even.g_levels, densities(sampled, Axis::G, rule, spacing));
+            levels.cols.push_back(
+                regraded(even.g_levels, densities(sampled, Axis::G, rule, spacing)));
             if (chart.shape == ChartShape::Pillowcase) {
-                grid.g_levels = folded_levels(grid.g_levels);
+                levels.cols.back() = folded_levels(levels.cols.back());
             }
         }
-        grids.push_back(std::move(grid));
     }
-    return grids;
+    return levels;
 }
 
 }  // namespace leafcutter::geometry

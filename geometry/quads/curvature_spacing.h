@@ -10,13 +10,18 @@
 
 namespace leafcutter::geometry {
 
-// Regraded copies of `even` with the same counts, each by another mean of the curvature over a
-// leaf: over the levels for Spacing::Curvature, over the surface's area for Spacing::CurvatureArea.
-// No width changes by more than a factor of 2. Which of them is best shows only when they are
+// Levels with the same counts as the even ones, each by another mean of the curvature over a leaf:
+// over the levels for Spacing::Curvature, over the surface's area for Spacing::CurvatureArea. No
+// width changes by more than a factor of 2. Which of them are best shows only when they are
 // measured.
-std::vector<CylinderGrid> curvature_grids(const Cylinder& chart,
-                                          const CylinderGrid& even,
-                                          const ChartSampler& sampler,
-                                          Spacing spacing);
+struct CurvatureLevels {
+    std::vector<std::vector<double>> rows;
+    std::vector<std::vector<double>> cols;  // None where columns are shifted into one another.
+};
+
+CurvatureLevels curvature_levels(const Cylinder& chart,
+                                 const CylinderGrid& even,
+                                 const ChartSampler& sampler,
+                                 Spacing spacing);
 
 }  // namespace leafcutter::geometry

@@ -14,7 +14,7 @@
 #include "geometry/quads/chart_sampler.h"
 #include "geometry/quads/conforming_mesh.h"
 #include "geometry/quads/conforming_rectangles.h"
-#include "geometry/quads/curvature_spacing.h"
+#include "geometry/quads/graded_grid.h"
 #include "geometry/quads/grid.h"
 #include "geometry/quads/half_sag.h"
 #include "geometry/quads/patch.h"
@@ -28,9 +28,6 @@ namespace leafcutter::geometry {
 namespace {
 
 using Eigen::Vector3d;
-
-// Graded grids may come this much less close on average, if the largest distance falls.
-constexpr double kWorseMean = 1.2;
 
 // Of the number of cells, where wide ones would fold over.
 constexpr int kMostDoublings = 5;
@@ -137,41 +134,17 @@ void add_cylinder(QuadMesh& mesh,
     append(mesh, patch, grid, regions);
 }
 
-// The grid among `even` and its regraded copies that comes closest to the surface: the smallest
-// largest distance of those whose mean is not worse, else of those where it is little worse.
-CylinderGrid closest_grid(const Work& work,
-                          const CylinderGrid& even,
-                          const GridOptions& options,
-                          const Context& context) {
-    const ClosestPoint surface(work.chart.mesh);
-    const auto distance = [&](const CylinderGrid& grid) {
-        QuadMesh mesh;
-        add_cylinder(mesh, work, grid, options, context);
-        mesh.addresses.assign(mesh.quads.size(), {});
-        return measure_quality(mesh, surface, context).overall.surface_distance_percent;
-    };
-    struct Scored {
-        CylinderGrid grid;
-        MaxAvg distance;
-    };
-    std::vector<Scored> scored{{even, distance(even)}};
-    for (CylinderGrid& grid : curvature_grids(work.chart, even, work.sampler, options.spacing)) {
-        const MaxAvg found = distance(grid);
-        scored.push_back({std::move(grid), found});
-    }
-    for (const double allowed : {1.0, kWorseMean}) {
-        const double limit = allowed * scored.front().distance.avg;
-        const Scored* best = &scored.front();
-        for (const Scored& candidate : scored) {
-            if (candidate.distance.avg <= limit && candidate.distance.max < best->distance.max) {
-                best = &candidate;
-            }
-        }
-        if (best != &scored.front()) {
-            return best->grid;
-        }
-    }
-    return even;
+CylinderGrid graded(const Work& work,
+                    const CylinderGrid& even,
+                    const GridOptions& options,
+                    const Context& context) {
+    return graded_grid({.chart = work.chart,
+                        .sampler = work.sampler,
+                        .even = even,
+                        .spacing = options.spacing,
+                        .half_sag_offset = options.half_sag_offset,
+                        .movable = {}},
+                       context);
 }
 
 // The cylinder's quads at the wished size, or smaller ones where those would face inwards: a few
@@ -185,7 +158,7 @@ void add_fine_enough(QuadMesh& mesh,
     for (int doublings = 0;; ++doublings) {
         CylinderGrid grid = choose_grid(work.chart, wish);
         if (options.spacing != Spacing::Uniform) {
-            grid = closest_grid(work, grid, options, context);
+            grid = graded(work, grid, options, context);
         }
         try {
             add_cylinder(mesh, work, grid, options, context);
