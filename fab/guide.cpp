@@ -214,6 +214,9 @@ private:
 
     void add_cylinder(std::size_t cylinder) {
         const auto& grid = job_.quads.grids[cylinder];
+        if (grid.rows == 0) {
+            return;  // Left out: its ends are joined.
+        }
         const double cell = std::clamp(900.0 / grid.cols, 4.0, 16.0);
         add("<h2>Cylinder {}{}: {} weft rows, {} warp columns</h2>\n", cylinder + 1,
             part_text(cylinder), grid.rows, grid.cols);

@@ -316,6 +316,9 @@ std::vector<Leaf> sample_leaves(const Foliation& foliation, const QuadMesh& quad
     std::vector<Leaf> kept;
     const auto every = static_cast<std::size_t>(std::max(stride, 1));
     for (std::size_t i = 0; i < foliation.cylinders.size(); ++i) {
+        if (quads.grids[i].rows == 0) {
+            continue;  // Left out.
+        }
         const Cylinder& chart = foliation.cylinders[i];
         const ChartGrid grid(chart, quads.grids[i]);
         for (const Axis axis : {Axis::F, Axis::G}) {

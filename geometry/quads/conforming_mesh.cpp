@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "geometry/quads/patch.h"
 #include "geometry/quads/quad_edges.h"
 #include "geometry/quads/relaxed_arcs.h"
+#include "geometry/quads/shared_vertices.h"
 #include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
@@ -30,18 +30,14 @@ constexpr double kMostExcess = 1.1;
 constexpr int kMostSizes = 20;
 // From a size where quads would face inwards to the next.
 constexpr double kFiner = 1.25;
-// With more cells than this times the wanted they won't unfold either: sharp edges of the model. Of
-// those so many quads may fold over.
+// With more cells than this times the wanted they won't unfold either: sharp edges of the model.
 constexpr double kMostRefined = 4.0;
+// Quads that may fold over at such edges.
 constexpr double kFoldedShare = 0.005;
+constexpr double kFewFolded = 1.0;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
-}
-
-int floor_mod(int value, int modulus) {
-    const int rest = value % modulus;
-    return rest < 0 ? rest + modulus : rest;
 }
 
 // A cylinder's own grid, before its vertices are shared.
@@ -59,6 +55,11 @@ Piece make_piece(const Foliation& foliation,
                  int cylinder,
                  const Context& context) {
     Piece piece;
+    if (counts.rows[at(cylinder)] == 0) {
+        piece.chart = foliation.cylinders[at(cylinder)];
+        piece.grid.shape = piece.chart.shape;
+        return piece;
+    }
     piece.chart = conform_chart(foliation, network, counts, cylinder, context);
     piece.grid = conforming_grid(piece.chart, counts, cylinder);
     const ChartGrid grid(piece.chart, piece.grid);
@@ -70,68 +71,6 @@ Piece make_piece(const Foliation& foliation,
     return piece;
 }
 
-// Numbers of the shared vertices: singular points, and those along arcs.
-class SharedVertices {
-public:
-    SharedVertices(const Foliation& foliation,
-                   const ArcNetwork& network,
-                   const JunctionCounts& counts)
-        : network_(network), counts_(counts) {
-        for (std::size_t a = 0; a < network.arcs.size(); ++a) {
-            const CriticalArc& arc = network.arcs[a];
-            add_singular(arc.points.front(), foliation);
-            add_singular(arc.points.back(), foliation);
-            first_.push_back(static_cast<int>(positions_.size()));
-            const int cells = counts.arc_cells[a];
-            for (int k = 1; k < cells; ++k) {
-                positions_.push_back(point_on(arc, foliation, static_cast<double>(k) / cells));
-            }
-        }
-    }
-
-    const std::vector<Vector3d>& positions() const { return positions_; }
-    const std::map<int, int>& singular() const { return singular_; }
-
-    // The vertex of a column at a critical end.
-    int vertex(int cylinder, std::size_t side, int col) const {
-        const int twist = side == 1 ? counts_.twist[at(cylinder)] : 0;
-        int place = floor_mod(col - twist, counts_.cols[at(cylinder)]);
-        for (const ArcUse& use : network_.ends[at(cylinder)][side].uses) {
-            const int cells = counts_.arc_cells[at(use.arc)];
-            if (place < cells) {
-                return on_arc(use.arc, use.forward ? place : cells - place);
-            }
-            place -= cells;
-        }
-        throw Error(ErrorKind::SelfCheck, "quads-topology",
-                    fmt::format("quads: an end of cylinder {} is too short", cylinder));
-    }
-
-private:
-    void add_singular(int point, const Foliation& foliation) {
-        if (singular_.emplace(point, static_cast<int>(positions_.size())).second) {
-            positions_.push_back(foliation.critical_points[at(point)].position);
-        }
-    }
-
-    int on_arc(int arc, int place) const {
-        const std::vector<int>& points = network_.arcs[at(arc)].points;
-        if (place == 0) {
-            return singular_.at(points.front());
-        }
-        if (place == counts_.arc_cells[at(arc)]) {
-            return singular_.at(points.back());
-        }
-        return first_[at(arc)] + place - 1;
-    }
-
-    const ArcNetwork& network_;
-    const JunctionCounts& counts_;
-    std::vector<Vector3d> positions_;
-    std::map<int, int> singular_;  // Critical point to vertex.
-    std::vector<int> first_;       // Per arc its first inner vertex.
-};
-
 // Gives the pieces' vertices their numbers in the whole.
 class Joiner {
 public:
@@ -141,6 +80,9 @@ public:
     }
 
     void add(Piece& piece, int cylinder) {
+        if (piece.grid.rows == 0) {
+            return;
+        }
         const ChartGrid grid(piece.chart, piece.grid);
         std::vector<int> number(piece.patch.vertices.size(), -1);
         for (int row = 0; row <= piece.grid.rows; ++row) {
@@ -171,7 +113,8 @@ private:
 };
 
 // What theory says: every edge between two quads but those on open ends, Euler characteristic of
-// the surface, four quads round every vertex inside but twice its prongs round a singular one.
+// the surface, four quads round every vertex inside but twice its prongs round a singular one, or
+// as many more than four as all of them have that came together there.
 void check_whole(const Foliation& foliation,
                  const ArcNetwork& network,
                  const JunctionCounts& counts,
@@ -181,10 +124,8 @@ void check_whole(const Foliation& foliation,
     for (const JoinedCylinder& part : mesh.parts) {
         quads.insert(quads.end(), part.quads.begin(), part.quads.end());
     }
-    std::vector<int> wanted(mesh.vertices.size(), 4);
-    for (const auto& [point, vertex] : shared.singular()) {
-        wanted[at(vertex)] = 2 * foliation.critical_points[at(point)].prongs;
-    }
+    std::vector<int> wanted = shared.valences(foliation);
+    wanted.resize(mesh.vertices.size(), 4);
     const QuadNeighbours found = find_neighbours(quads);
     int open_edges = 0;
     for (const int c : network.cylinders) {
@@ -205,7 +146,7 @@ void check_whole(const Foliation& foliation,
     const int euler =
         static_cast<int>(mesh.vertices.size()) - found.edges + static_cast<int>(quads.size());
     const int wanted_euler =
-        static_cast<int>(shared.singular().size()) - static_cast<int>(network.arcs.size());
+        static_cast<int>(shared.singular_points()) - static_cast<int>(network.arcs.size());
     if (found.faults != 0 || found.boundary_edges != open_edges || euler != wanted_euler ||
         valence != wanted) {
         throw Error(
@@ -272,14 +213,98 @@ double rounded_down(double width) {
     return std::floor(width / digit) * digit;
 }
 
-[[noreturn]] void refuse_width(const GridOptions& options, double area, int quads, int tightest) {
-    throw Error(ErrorKind::BadOption, "strips-too-wide",
-                fmt::format("grid.strip_width_mm: strips of {:.4g} mm are too wide to go on from "
-                            "one cylinder into the next, most of all in cylinder {}; use at most "
-                            "{:.4g} mm (about {} quads), or grid.junctions \"independent\"",
-                            options.strip_width_mm, tightest, rounded_down(std::sqrt(area / quads)),
-                            quads));
-}
+// Tries ever narrower strips until the quads carry the topology and none, or few, fold over.
+class SizeSearch {
+public:
+    SizeSearch(const Foliation& foliation, const ArcNetwork& network, const GridOptions& options)
+        : foliation_(foliation),
+          network_(network),
+          options_(options),
+          area_(joined_area(foliation, network)),
+          counter_(foliation, network, wish_of(foliation, options, area_)) {}
+
+    JoinedMesh run(const Context& context) {
+        double size = counter_.wanted_cells();
+        double most = 0.0;  // Cells, once there are enough of them for the topology.
+        for (int tries = 0; tries < kMostSizes && (most == 0.0 || size < most); ++tries) {
+            const JunctionCounts counts = counter_.choose(size, context);
+            tightest_ = tightest_ < 0 ? counts.tightest : tightest_;
+            if (!counter_.has_fixed_counts() && counts.cells > kMostExcess * size) {
+                size = counts.cells;
+                continue;
+            }
+            most = most > 0.0 ? most : kMostRefined * size;
+            const ArcNetwork arcs = relax_arcs(foliation_, network_, counts, context);
+            JoinedMesh mesh = build(foliation_, arcs, counts, options_, context);
+            const double folded = static_cast<double>(mesh.folded);
+            if (folded <= std::max(kFewFolded, kFoldedShare * counts.cells)) {
+                return accepted(std::move(mesh), counts, size);
+            }
+            if (counter_.has_fixed_counts()) {
+                break;
+            }
+            size *= kFiner;
+        }
+        throw Error(ErrorKind::BadOption, "cells-fold-over",
+                    fmt::format("grid.junctions: with strips of {:.4g} mm, and with narrower ones "
+                                "too, cells fold over where cylinders are joined; use "
+                                "\"independent\", or smooth the model",
+                                options_.strip_width_mm));
+    }
+
+private:
+    static double joined_area(const Foliation& foliation, const ArcNetwork& network) {
+        double area = 0.0;
+        for (const int c : network.cylinders) {
+            area += surface_area(foliation.cylinders[at(c)].mesh);
+        }
+        return area;
+    }
+
+    JoinedMesh accepted(JoinedMesh mesh, const JunctionCounts& counts, double size) const {
+        if (size > counter_.wanted_cells()) {
+            const double width = rounded_down(std::sqrt(area_ / size));
+            if (!options_.may_narrow) {
+                refuse(width, size);
+            }
+            mesh.warnings.push_back(fmt::format(
+                "strips are {:.4g} mm wide: wider ones can't go on from one cylinder into the "
+                "next, most of all in cylinder {}",
+                width, tightest_));
+        }
+        if (mesh.folded > 0) {
+            mesh.warnings.push_back(fmt::format(
+                "{} cells fold over at sharp edges of the model; crease them there, or smooth "
+                "the model",
+                mesh.folded));
+        }
+        for (const int c : network_.cylinders) {
+            if (counts.rows[at(c)] == 0) {
+                mesh.warnings.push_back(
+                    fmt::format("cylinder {}: is thinner than a quarter of a strip and left out; "
+                                "its two ends are joined",
+                                c));
+            }
+        }
+        return mesh;
+    }
+
+    [[noreturn]] void refuse(double width, double size) const {
+        throw Error(
+            ErrorKind::BadOption, "strips-too-wide",
+            fmt::format("grid.strip_width_mm: strips of {:.4g} mm are too wide to go on from one "
+                        "cylinder into the next, most of all in cylinder {}; use at most {:.4g} mm "
+                        "(about {:.0f} quads), or grid.junctions \"independent\"",
+                        options_.strip_width_mm, tightest_, width, size));
+    }
+
+    const Foliation& foliation_;
+    const ArcNetwork& network_;
+    const GridOptions& options_;
+    double area_ = 0.0;
+    JunctionCounter counter_;
+    int tightest_ = -1;  // At the wanted size.
+};
 
 }  // namespace
 
@@ -290,48 +315,7 @@ JoinedMesh join_cylinders(const Foliation& foliation,
     if (network.cylinders.empty()) {
         return {};
     }
-    double area = 0.0;
-    for (const int c : network.cylinders) {
-        area += surface_area(foliation.cylinders[at(c)].mesh);
-    }
-    const JunctionCounter counter(foliation, network, wish_of(foliation, options, area));
-    double size = counter.wanted_cells();
-    int tightest = -1;
-    std::optional<JoinedMesh> folded;  // The first, if only a few of its quads face inwards.
-    double most = 0.0;                 // Cells, once there are enough of them for the topology.
-    for (int tries = 0; tries < kMostSizes && (most == 0.0 || size < most); ++tries) {
-        const JunctionCounts counts = counter.choose(size, context);
-        if (tightest < 0) {
-            tightest = counts.tightest;
-        }
-        if (!counter.has_fixed_counts() && counts.cells > kMostExcess * size) {
-            size = counts.cells;
-            continue;
-        }
-        most = most > 0.0 ? most : kMostRefined * size;
-        const ArcNetwork arcs = relax_arcs(foliation, network, counts, context);
-        JoinedMesh mesh = build(foliation, arcs, counts, options, context);
-        if (mesh.folded == 0) {
-            if (size > counter.wanted_cells()) {
-                refuse_width(options, area, static_cast<int>(std::lround(size)), tightest);
-            }
-            return mesh;
-        }
-        if (size <= counter.wanted_cells() &&
-            static_cast<double>(mesh.folded) <= std::max(1.0, kFoldedShare * counts.cells)) {
-            folded = std::move(mesh);
-        }
-        if (counter.has_fixed_counts()) {
-            break;
-        }
-        size *= kFiner;
-    }
-    if (folded) {
-        return std::move(*folded);
-    }
-    throw Error(ErrorKind::SelfCheck, "quads-inverted",
-                "quads: too many face inwards where cylinders are joined; use narrower strips "
-                "(grid.strip_width_mm), or grid.junctions \"independent\"");
+    return SizeSearch(foliation, network, options).run(context);
 }
 
 }  // namespace leafcutter::geometry

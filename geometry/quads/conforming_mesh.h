@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,11 +27,14 @@ struct JoinedMesh {
     std::vector<Eigen::Vector3d> vertices;
     std::vector<int> cylinders;         // Of the foliation, ascending; none if none meet at arcs.
     std::vector<JoinedCylinder> parts;  // One each.
-    std::size_t folded = 0;  // Quads that face inwards at sharp edges, whatever their size.
+    std::size_t folded = 0;          // Quads that face inwards at sharp edges.
+    std::vector<std::string> warnings;
 };
 
-// Throws Error(BadOption, "strips-too-wide") where so few quads can't carry the topology, or would
-// face inwards, naming the widest strips that can.
+// Cylinders too thin for a row are left out, with a warning. Strips are narrower than asked for, if
+// they may be, where so few quads can't carry the topology, or too many would fold over.
+// Throws Error(BadOption, "strips-too-wide") where they may not, naming the widest strips that can,
+// and Error(BadOption, "cells-fold-over") where no width will do.
 JoinedMesh join_cylinders(const Foliation& foliation,
                           const GridOptions& options,
                           const Context& context);

@@ -18,13 +18,13 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::size_t kMostNodes = 200'000;
+// Of the search for whole numbers: at every size tried, and at the best few of them.
+constexpr std::size_t kQuickNodes = 5'000;
+constexpr std::size_t kMostNodes = 100'000;
+constexpr std::size_t kThorough = 3;
 // Sizes tried: this far to both sides of the wanted number of cells, in so many steps.
 constexpr double kScan = 0.1;
 constexpr int kScanSteps = 16;
-// Strips as wide as asked for in the mean, to 2 %, is more than any other wish.
-constexpr double kCountTolerance = 0.035;
-constexpr double kCountWeight = 1e3;
 // Arcs much shorter than a cell count as so many cells in the costs, or they would rule.
 constexpr double kShortest = 0.3;
 // Of fixed columns against lengths of arcs.
@@ -35,7 +35,6 @@ constexpr double kForbidden = 1e9;
 constexpr double kArcSlant = 0.25;
 // Cylinders flatter than this have too little area to rule the rest by their twist.
 constexpr double kFlattest = 0.005;
-constexpr int kMostRowChanges = 1000;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -43,29 +42,6 @@ std::size_t at(int index) {
 
 double square(double x) {
     return x * x;
-}
-
-// Counted like a rule of A over the cylinders' ends: fewer rows than these would give two edges the
-// same two vertices.
-std::vector<int> least_rows(const ArcNetwork& network) {
-    std::vector<int> least(network.ends.size(), 1);
-    const auto joins = [&network](int c) {
-        const auto [lower, upper] = network.node[at(c)];
-        return std::minmax(lower, upper);
-    };
-    for (const int c : network.cylinders) {
-        const auto [lower, upper] = network.node[at(c)];
-        if (lower < 0 || upper < 0) {
-            continue;
-        }
-        const bool parallel =
-            std::any_of(network.cylinders.begin(), network.cylinders.end(),
-                        [&](int other) { return other != c && joins(other) == joins(c); });
-        const bool twice =
-            network.ends[at(c)][0].uses.size() >= 4 && network.ends[at(c)][1].uses.size() >= 4;
-        least[at(c)] = lower == upper ? 3 : parallel || twice ? 2 : 1;
-    }
-    return least;
 }
 
 // The mean of columns - scale g along an end, over g.
@@ -135,8 +111,7 @@ JunctionCounter::JunctionCounter(const Foliation& foliation,
     : foliation_(foliation),
       network_(network),
       wish_(std::move(wish)),
-      aspect_(foliation.cylinders.size(), 1.0),
-      least_rows_(least_rows(network)) {
+      aspect_(foliation.cylinders.size(), 1.0) {
     for (const int c : network.cylinders) {
         const Cylinder& chart = foliation.cylinders[at(c)];
         aspect_[at(c)] =
@@ -231,12 +206,24 @@ Eigen::VectorXd JunctionCounter::lengths(double cells) const {
 
 JunctionCounts JunctionCounter::choose(double cells, const Context& context) const {
     std::optional<Scored> best;
-    for (int i = -kScanSteps; i <= kScanSteps; ++i) {
+    std::vector<std::pair<double, double>> unproven;  // Score and scale.
+    const auto consider = [&](double scale, std::size_t most_nodes) {
         context.check();
-        std::optional<Scored> found = try_size(cells, std::exp(kScan * i / kScanSteps), context);
+        std::optional<Scored> found = try_size(cells, scale, most_nodes, context);
+        if (found && !found->counts.proven && most_nodes == kQuickNodes) {
+            unproven.emplace_back(found->score, scale);
+        }
         if (found && (!best || found->score < best->score)) {
             best = std::move(found);
         }
+    };
+    for (int i = -kScanSteps; i <= kScanSteps; ++i) {
+        consider(std::exp(kScan * i / kScanSteps), kQuickNodes);
+    }
+    std::sort(unproven.begin(), unproven.end());
+    unproven.resize(std::min(unproven.size(), kThorough));
+    for (const auto& [score, scale] : unproven) {
+        consider(scale, kMostNodes);
     }
     if (!best) {
         throw Error(ErrorKind::BadOption, "counts-do-not-fit",
@@ -250,6 +237,7 @@ JunctionCounts JunctionCounter::choose(double cells, const Context& context) con
 
 std::optional<JunctionCounter::Scored> JunctionCounter::try_size(double cells,
                                                                  double scale,
+                                                                 std::size_t most_nodes,
                                                                  const Context& context) const {
     const auto arcs = static_cast<Index>(network_.arcs.size());
     const Eigen::VectorXd ideal = lengths(wanted_);
@@ -263,7 +251,7 @@ std::optional<JunctionCounter::Scored> JunctionCounter::try_size(double cells,
         const RowsCols& counts = wish_.counts[at(network_.cylinders[r])];
         targets[arcs + static_cast<Index>(r)] = counts.cols ? kFixedWeight * *counts.cols : 0.0;
     }
-    const std::optional<IntegerSolution> solution = program_->solve(targets, kMostNodes, context);
+    const std::optional<IntegerSolution> solution = program_->solve(targets, most_nodes, context);
     if (!solution) {
         return std::nullopt;
     }
@@ -300,110 +288,6 @@ void JunctionCounter::set_twists(JunctionCounts& counts) const {
     }
 }
 
-double JunctionCounter::ideal_rows(const JunctionCounts& counts, int cylinder) const {
-    return aspect_[at(cylinder)] * counts.cols[at(cylinder)];
-}
-
-int JunctionCounter::nearest_rows(const JunctionCounts& counts,
-                                  int cylinder,
-                                  std::optional<int> parity) const {
-    if (wish_.counts[at(cylinder)].rows) {
-        return *wish_.counts[at(cylinder)].rows;
-    }
-    const double ideal = ideal_rows(counts, cylinder);
-    int best = 0;
-    const int low = std::max(least_rows_[at(cylinder)], static_cast<int>(ideal) - 1);
-    for (int rows = low; rows <= low + 4; ++rows) {
-        if (parity && rows % 2 != *parity) {
-            continue;
-        }
-        if (best == 0 || std::abs(std::log(rows / ideal)) < std::abs(std::log(best / ideal))) {
-            best = rows;
-        }
-    }
-    return best;
-}
-
-void JunctionCounter::set_rows(JunctionCounts& counts, double cells) const {
-    counts.rows.assign(network_.ends.size(), 0);
-    std::vector<std::optional<int>> parities(network_.ends.size());
-    if (wish_.parity == Parity::Even) {
-        std::vector<ParityCost> costs(network_.ends.size(), {0.0, 0.0});
-        for (const int c : network_.cylinders) {
-            for (int parity = 0; parity < 2; ++parity) {
-                const int rows = nearest_rows(counts, c, parity);
-                const double ideal = ideal_rows(counts, c);
-                costs[at(c)][at(parity)] = rows % 2 != parity ? kForbidden
-                                                              : counts.cols[at(c)] * ideal *
-                                                                    square(std::log(rows / ideal));
-            }
-        }
-        parities = choose_row_parities(network_, colour_ends(network_, counts.arc_cells),
-                                       counts.twist, costs);
-    }
-    for (const int c : network_.cylinders) {
-        counts.rows[at(c)] = nearest_rows(counts, c, parities[at(c)]);
-        counts.misfits += parities[at(c)] && counts.rows[at(c)] % 2 != *parities[at(c)] ? 1 : 0;
-    }
-    // Rows more or less where that comes closer to the wanted size.
-    double least = strain(counts, cells);
-    for (int change = 0; change < kMostRowChanges; ++change) {
-        int best_cylinder = -1;
-        int best_rows = 0;
-        for (const int c : network_.cylinders) {
-            const int step = parities[at(c)] ? 2 : 1;
-            const int before = counts.rows[at(c)];
-            for (const int rows : {before - step, before + step}) {
-                if (wish_.counts[at(c)].rows || rows < least_rows_[at(c)]) {
-                    continue;
-                }
-                counts.rows[at(c)] = rows;
-                const double found = strain(counts, cells);
-                if (found < least) {
-                    least = found;
-                    best_cylinder = c;
-                    best_rows = rows;
-                }
-            }
-            counts.rows[at(c)] = before;
-        }
-        if (best_cylinder < 0) {
-            break;
-        }
-        counts.rows[at(best_cylinder)] = best_rows;
-    }
-    counts.cells = 0;
-    double most = 0.0;
-    for (const int c : network_.cylinders) {
-        const int own = counts.rows[at(c)] * counts.cols[at(c)];
-        counts.cells += own;
-        const double share =
-            cells * square(foliation_.cylinders[at(c)].width) * aspect_[at(c)] / unit_area_;
-        if (own / share > most) {
-            most = own / share;
-            counts.tightest = c;
-        }
-    }
-}
-
-// The mean square of the cells' stretch and slant, and what the number of cells is off.
-double JunctionCounter::strain(const JunctionCounts& counts, double cells) const {
-    double sum = 0.0;
-    double area = 0.0;
-    double all = 0.0;
-    for (const int c : network_.cylinders) {
-        const double own = static_cast<double>(counts.rows[at(c)]) * counts.cols[at(c)];
-        const double ideal = ideal_rows(counts, c);
-        sum += counts.cols[at(c)] * ideal *
-               (square(std::log(counts.rows[at(c)] / ideal)) + square(counts.slip[at(c)] / ideal));
-        area += counts.cols[at(c)] * ideal;
-        all += own;
-    }
-    const double off = std::abs(std::log(all / cells));
-    const double beyond = std::max(0.0, off - kCountTolerance);
-    return sum / area + (fixed_ ? 0.0 : square(off) + kCountWeight * square(beyond));
-}
-
 void JunctionCounter::check_fixed(const JunctionCounts& counts) const {
     for (const int c : network_.cylinders) {
         const RowsCols& wish = wish_.counts[at(c)];
@@ -414,10 +298,10 @@ void JunctionCounter::check_fixed(const JunctionCounts& counts) const {
                                     "neighbours; {} do, or use independent junctions",
                                     path, *wish.cols, c, counts.cols[at(c)]));
         }
-        if (wish.rows && *wish.rows < least_rows_[at(c)]) {
+        if (wish.rows && *wish.rows < counts.least_rows[at(c)]) {
             throw Error(ErrorKind::BadOption, "too-few-rows",
                         fmt::format("{}.rows: {} can't carry cylinder {}; use at least {}", path,
-                                    *wish.rows, c, least_rows_[at(c)]));
+                                    *wish.rows, c, counts.least_rows[at(c)]));
         }
     }
     if (wish_.parity != Parity::Even || !fixed_) {

@@ -21,8 +21,10 @@ struct JunctionWish {
 };
 
 struct JunctionCounts {
-    std::vector<int> arc_cells;  // Per arc.
-    std::vector<int> rows;       // Per cylinder of the foliation; 0 for those outside.
+    std::vector<int> arc_cells;   // Per arc.
+    std::vector<int> rows;        // Per cylinder of the foliation; 0 for those outside, and for
+                                  // thin ones that are left out: their ends are joined.
+    std::vector<int> least_rows;  // Per cylinder: fewer would double edges.
     std::vector<int> cols;
     std::vector<int> twist;    // Columns by which the upper end's first vertex is aside.
     std::vector<double> slip;  // By how many columns a leaf of F* is off at the other end.
@@ -55,13 +57,21 @@ private:
         JunctionCounts counts;
         double score = 0.0;
     };
+    using Parities = std::vector<std::optional<int>>;  // Per cylinder; none where it is free.
 
     void set_wanted();
     IntegerProgram make_program() const;
     Eigen::VectorXd lengths(double cells) const;
-    std::optional<Scored> try_size(double cells, double scale, const Context& context) const;
+    std::optional<Scored> try_size(double cells,
+                                   double scale,
+                                   std::size_t most_nodes,
+                                   const Context& context) const;
     void set_twists(JunctionCounts& counts) const;
     void set_rows(JunctionCounts& counts, double cells) const;
+    void leave_out_thin(JunctionCounts& counts) const;
+    Parities row_parities(const JunctionCounts& counts) const;
+    bool change_rows(JunctionCounts& counts, const Parities& parities, double cells) const;
+    double stretch_cost(const JunctionCounts& counts, int cylinder, int rows) const;
     double ideal_rows(const JunctionCounts& counts, int cylinder) const;
     int nearest_rows(const JunctionCounts& counts, int cylinder, std::optional<int> parity) const;
     double strain(const JunctionCounts& counts, double cells) const;
@@ -70,8 +80,7 @@ private:
     const Foliation& foliation_;
     const ArcNetwork& network_;
     JunctionWish wish_;
-    std::vector<double> aspect_;   // Per cylinder mean height over mean width on the surface.
-    std::vector<int> least_rows_;  // Fewer would double edges.
+    std::vector<double> aspect_;  // Per cylinder mean height over mean width on the surface.
     double wanted_ = 1.0;
     bool fixed_ = false;
     double unit_area_ = 0.0;  // Cells of unit size in g.

@@ -206,12 +206,7 @@ JoinedMesh join_rings(QuadMesh& mesh,
     if (!joined.cylinders.empty()) {
         mesh.vertices = std::move(joined.vertices);
         mesh.charts = foliation.cylinders;
-        if (joined.folded > 0) {
-            mesh.warnings.push_back(
-                fmt::format("{} cells fold over at sharp edges of the model; crease them there, or "
-                            "smooth the model",
-                            joined.folded));
-        }
+        mesh.warnings = joined.warnings;
         if (options.spacing != Spacing::Uniform) {
             mesh.warnings.emplace_back(
                 "grid.spacing: cylinders that are joined have uniform spacing, as their columns "
