@@ -64,7 +64,8 @@ FoliationMode wished_mode(const SurfacePart& part, const FoliationOptions& optio
         return FoliationMode::SpherePolar;
     }
     const bool is_fixed = options.puncture != PunctureChoice::Auto || options.weights ||
-                          options.pants == PantsSource::User || !options.near.empty();
+                          options.pants == PantsSource::User || !options.near.empty() ||
+                          !options.forbidden_loops.empty();
     return is_fixed ? natural_mode(part) : FoliationMode::Auto;
 }
 

@@ -168,6 +168,9 @@ void check_names(const FoliationOptions& options, const std::vector<SurfacePart>
     for (const std::vector<int>& loop : options.loops) {
         check_together(parts, loop, "loops");
     }
+    for (const std::vector<int>& loop : options.forbidden_loops) {
+        check_together(parts, loop, "forbid");
+    }
     check_loops(parts, options.sources, "foliation.sources");
     check_loops(parts, options.sinks, "foliation.sinks");
     if (options.weights && parts.size() > 1 && options.components == Components::Each) {
@@ -190,10 +193,12 @@ FoliationOptions options_of(const SurfacePart& part, const FoliationOptions& opt
     own.near.erase(
         std::remove_if(own.near.begin(), own.near.end(), [&](int v) { return !holds(part, v); }),
         own.near.end());
-    own.loops.erase(
-        std::remove_if(own.loops.begin(), own.loops.end(),
-                       [&](const std::vector<int>& loop) { return !holds_any(part, loop); }),
-        own.loops.end());
+    for (std::vector<std::vector<int>>* loops : {&own.loops, &own.forbidden_loops}) {
+        loops->erase(
+            std::remove_if(loops->begin(), loops->end(),
+                           [&](const std::vector<int>& loop) { return !holds_any(part, loop); }),
+            loops->end());
+    }
     if (own.pants == PantsSource::User && own.loops.empty() && !options.loops.empty()) {
         own.pants = PantsSource::Reeb;
     }

@@ -78,6 +78,9 @@ FoliationOptions translated(const FoliationOptions& options, const SurfacePart& 
     for (std::vector<int>& loop : own.loops) {
         names.translate(loop, "foliation.loops");
     }
+    for (std::vector<int>& loop : own.forbidden_loops) {
+        names.translate(loop, "foliation.forbid");
+    }
     return own;
 }
 
@@ -192,6 +195,15 @@ bool has_singular_points(FoliationMode mode) {
            mode == FoliationMode::SpherePolar || mode == FoliationMode::SpherePillowcase;
 }
 
+void check_forbidden(const SurfacePart& part, FoliationMode mode, const FoliationOptions& options) {
+    if (!options.forbidden_loops.empty() && mode != FoliationMode::Pants) {
+        throw Error(ErrorKind::BadOption, "nothing-to-forbid",
+                    fmt::format("foliation.forbid: the model is {}, woven in mode \"{}\" without a "
+                                "choice of loops; leave it out",
+                                describe(part), name_of(mode)));
+    }
+}
+
 void check_near(const SurfacePart& part, FoliationMode mode, const FoliationOptions& options) {
     if (!options.near.empty() && !has_singular_points(mode)) {
         throw Error(ErrorKind::BadOption, "no-singular-points",
@@ -280,6 +292,7 @@ Foliation foliate_part(const SurfacePart& part,
                                                  needed, needed == 1 ? "" : "s")));
     }
     check_near(part, mode, options);
+    check_forbidden(part, mode, options);
     const FoliationOptions own = translated(options, part);
     Foliation foliation = dispatch(part, mode, own, context);
     foliation.mode = mode;
