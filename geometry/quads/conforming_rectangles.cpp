@@ -35,7 +35,10 @@ constexpr double kMostExcess = 1.1;
 constexpr int kMostSizes = 20;
 // From a size where quads would face inwards to the next.
 constexpr double kFiner = 1.25;
+// With more cells than this times the wanted they won't unfold either: sharp edges of the model.
 constexpr double kMostRefined = 4.0;
+// Quads that may fold over at such edges.
+constexpr double kFewFolded = 1.0;
 constexpr double kFoldedShare = 0.005;
 
 std::size_t at(int index) {
@@ -163,9 +166,9 @@ Piece make_piece(const Plan& plan, int cylinder, const Context& context) {
 }
 
 // Numbers of the vertices on flanks.
-class SharedVertices {
+class FlankVertices {
 public:
-    explicit SharedVertices(const Plan& plan) : plan_(plan) {
+    explicit FlankVertices(const Plan& plan) : plan_(plan) {
         first_.assign(plan.network.sides.size(), -1);
         rows_.assign(plan.network.sides.size(), 0);
         for (const int c : plan.network.cylinders) {
@@ -237,7 +240,7 @@ private:
 
 // Gives a piece's vertices their numbers in the whole.
 void number_piece(const Plan& plan,
-                  const SharedVertices& shared,
+                  const FlankVertices& shared,
                   int cylinder,
                   Piece& piece,
                   std::vector<Vector3d>& vertices) {
@@ -284,7 +287,7 @@ int open_edges(const Plan& plan) {
 
 // What theory says: every edge between two quads but those on loops, Euler characteristic by the
 // zeros' prongs, four quads round every vertex inside but twice its prongs round a zero.
-void check_whole(const Plan& plan, const SharedVertices& shared, const JoinedMesh& mesh) {
+void check_whole(const Plan& plan, const FlankVertices& shared, const JoinedMesh& mesh) {
     std::vector<std::array<int, 4>> quads;
     for (const JoinedCylinder& part : mesh.parts) {
         quads.insert(quads.end(), part.quads.begin(), part.quads.end());
@@ -327,7 +330,7 @@ JoinedMesh build(const Plan& plan, const GridOptions& options, const Context& co
     });
     JoinedMesh mesh;
     mesh.cylinders = plan.network.cylinders;
-    const SharedVertices shared(plan);
+    const FlankVertices shared(plan);
     mesh.vertices = shared.positions();
     std::vector<SagCell> cells;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -370,14 +373,90 @@ double rounded_down(double width) {
     return std::floor(width / digit) * digit;
 }
 
-[[noreturn]] void refuse_width(const GridOptions& options, double area, int quads, int tightest) {
-    throw Error(ErrorKind::BadOption, "strips-too-wide",
-                fmt::format("grid.strip_width_mm: strips of {:.4g} mm are too wide to go on from "
-                            "one rectangle into the next, most of all in cylinder {}; use at most "
-                            "{:.4g} mm (about {} quads), or grid.junctions \"independent\"",
-                            options.strip_width_mm, tightest, rounded_down(std::sqrt(area / quads)),
-                            quads));
-}
+// Tries ever narrower strips until the quads carry the topology and none, or few, fold over.
+class SizeSearch {
+public:
+    SizeSearch(const Foliation& foliation, const SideNetwork& network, const GridOptions& options)
+        : foliation_(foliation),
+          network_(network),
+          options_(options),
+          area_(joined_area(foliation, network)),
+          counter_(foliation, network, wish_of(foliation, options, area_)) {}
+
+    JoinedMesh run(const Context& context) {
+        double size = counter_.wanted_cells();
+        double most = 0.0;  // Cells, once there are enough of them for the topology.
+        for (int tries = 0; tries < kMostSizes && (most == 0.0 || size < most); ++tries) {
+            RectangleCounts counts = counter_.choose(size, context);
+            tightest_ = tightest_ < 0 ? counts.tightest : tightest_;
+            if (!counter_.has_fixed_counts() && counts.cells > kMostExcess * size) {
+                size = counts.cells;
+                continue;
+            }
+            most = most > 0.0 ? most : kMostRefined * size;
+            const RectangleRows rows(network_, counter_, counts);
+            JoinedMesh mesh = build({foliation_, network_, counts, rows}, options_, context);
+            if (static_cast<double>(mesh.folded) <=
+                std::max(kFewFolded, kFoldedShare * counts.cells)) {
+                return accepted(std::move(mesh), size);
+            }
+            if (counter_.has_fixed_counts()) {
+                break;
+            }
+            size *= kFiner;
+        }
+        throw Error(ErrorKind::BadOption, "cells-fold-over",
+                    fmt::format("grid.junctions: with strips of {:.4g} mm, and with narrower ones "
+                                "too, cells fold over where rectangles are joined; use "
+                                "\"independent\", or smooth the model",
+                                options_.strip_width_mm));
+    }
+
+private:
+    static double joined_area(const Foliation& foliation, const SideNetwork& network) {
+        double area = 0.0;
+        for (const int c : network.cylinders) {
+            area += surface_area(foliation.cylinders[at(c)].mesh);
+        }
+        return area;
+    }
+
+    JoinedMesh accepted(JoinedMesh mesh, double size) const {
+        if (size > counter_.wanted_cells()) {
+            const double width = rounded_down(std::sqrt(area_ / size));
+            if (!options_.may_narrow) {
+                refuse(width, size);
+            }
+            mesh.warnings.push_back(fmt::format(
+                "strips are {:.4g} mm wide: wider ones can't go on from one rectangle into the "
+                "next, most of all in cylinder {}",
+                width, tightest_));
+        }
+        if (mesh.folded > 0) {
+            mesh.warnings.push_back(fmt::format(
+                "{} cells fold over at sharp edges of the model; crease them there, or smooth "
+                "the model",
+                mesh.folded));
+        }
+        return mesh;
+    }
+
+    [[noreturn]] void refuse(double width, double size) const {
+        throw Error(
+            ErrorKind::BadOption, "strips-too-wide",
+            fmt::format("grid.strip_width_mm: strips of {:.4g} mm are too wide to go on from one "
+                        "rectangle into the next, most of all in cylinder {}; use at most {:.4g} "
+                        "mm (about {:.0f} quads), or grid.junctions \"independent\"",
+                        options_.strip_width_mm, tightest_, width, size));
+    }
+
+    const Foliation& foliation_;
+    const SideNetwork& network_;
+    const GridOptions& options_;
+    double area_ = 0.0;
+    RectangleCounter counter_;
+    int tightest_ = -1;  // At the wanted size.
+};
 
 }  // namespace
 
@@ -385,6 +464,7 @@ void merge_joined(JoinedMesh& mesh, JoinedMesh&& more) {
     const int base = static_cast<int>(mesh.vertices.size());
     mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
     mesh.folded += more.folded;
+    mesh.warnings.insert(mesh.warnings.end(), more.warnings.begin(), more.warnings.end());
     for (std::size_t i = 0; i < more.parts.size(); ++i) {
         for (std::array<int, 4>& quad : more.parts[i].quads) {
             for (int& corner : quad) {
@@ -406,46 +486,7 @@ JoinedMesh join_rectangles(const Foliation& foliation,
     if (network.cylinders.empty()) {
         return {};
     }
-    double area = 0.0;
-    for (const int c : network.cylinders) {
-        area += surface_area(foliation.cylinders[at(c)].mesh);
-    }
-    const RectangleCounter counter(foliation, network, wish_of(foliation, options, area));
-    double size = counter.wanted_cells();
-    int tightest = -1;
-    std::optional<JoinedMesh> folded;  // The first, if only a few of its quads face inwards.
-    double most = 0.0;                 // Cells, once there are enough of them for the topology.
-    for (int tries = 0; tries < kMostSizes && (most == 0.0 || size < most); ++tries) {
-        RectangleCounts counts = counter.choose(size, context);
-        tightest = tightest < 0 ? counts.tightest : tightest;
-        if (!counter.has_fixed_counts() && counts.cells > kMostExcess * size) {
-            size = counts.cells;
-            continue;
-        }
-        most = most > 0.0 ? most : kMostRefined * size;
-        const RectangleRows rows(network, counter, counts);
-        JoinedMesh mesh = build({foliation, network, counts, rows}, options, context);
-        if (mesh.folded == 0) {
-            if (size > counter.wanted_cells()) {
-                refuse_width(options, area, static_cast<int>(std::lround(size)), tightest);
-            }
-            return mesh;
-        }
-        if (size <= counter.wanted_cells() &&
-            static_cast<double>(mesh.folded) <= std::max(1.0, kFoldedShare * counts.cells)) {
-            folded = std::move(mesh);
-        }
-        if (counter.has_fixed_counts()) {
-            break;
-        }
-        size *= kFiner;
-    }
-    if (folded) {
-        return std::move(*folded);
-    }
-    throw Error(ErrorKind::SelfCheck, "quads-inverted",
-                "quads: too many face inwards where rectangles are joined; use narrower strips "
-                "(grid.strip_width_mm), or grid.junctions \"independent\"");
+    return SizeSearch(foliation, network, options).run(context);
 }
 
 }  // namespace leafcutter::geometry

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -113,6 +113,7 @@ RectangleCounter::RectangleCounter(const Foliation& foliation,
         scale_.emplace_back(chart_of_band(foliation, band, low, high), Axis::F, 0.0);
     }
     find_mergeable();
+    set_least_rows();
     set_wanted();
 }
 
@@ -145,6 +146,26 @@ void RectangleCounter::find_mergeable() {
     for (const FormBand& band : network_.bands) {
         const bool inner = band.lower >= 0 && band.upper >= 0;
         mergeable_.push_back(inner && linked.count({band.lower, band.upper}) == 0 ? 1 : 0);
+    }
+}
+
+// Two sides of one row each, between the same zeros, would be one edge.
+void RectangleCounter::set_least_rows() {
+    least_rows_.assign(network_.bands.size(), 1);
+    std::map<std::pair<int, int>, int> sides;
+    for (const CriticalSide& side : network_.sides) {
+        ++sides[{side.points.front(), side.points.back()}];
+    }
+    for (const CriticalSide& side : network_.sides) {
+        const int low = network_.zero_of(side.points.front());
+        const int high = network_.zero_of(side.points.back());
+        if (low < 0 || high < 0 || sides.at({side.points.front(), side.points.back()}) < 2) {
+            continue;
+        }
+        const std::vector<int>& bands = network_.band_at[at(std::max(side.left, side.right))];
+        if (bands[at(low + 1)] == bands[at(high)]) {
+            least_rows_[at(bands[at(high)])] = 2;
+        }
     }
 }
 
@@ -305,7 +326,7 @@ void RectangleCounter::set_free_rows(RectangleCounts& counts, double size) const
         ParityEdge edge{band.lower < 0 ? loop : band.lower, band.upper < 0 ? loop : band.upper, {}};
         for (int parity = 0; parity < 2; ++parity) {
             edge.cost[at(parity)] =
-                cols * ideal[b] * misfit(nearest_count(ideal[b], 1, parity), ideal[b]);
+                cols * ideal[b] * misfit(nearest_count(ideal[b], least_rows_[b], parity), ideal[b]);
         }
         if (mergeable_[b] != 0 && ideal[b] < kSharedRow) {
             edge.cost[0] = 0.0;
@@ -317,7 +338,8 @@ void RectangleCounter::set_free_rows(RectangleCounts& counts, double size) const
     for (std::size_t b = 0; b < network_.bands.size(); ++b) {
         const bool shared = mergeable_[b] != 0 && ideal[b] < kSharedRow;
         const int parity = wish_.parity == Parity::Even ? parities[b] : kAnyParity;
-        counts.rows.push_back(shared && parity != 1 ? 0 : nearest_count(ideal[b], 1, parity));
+        counts.rows.push_back(
+            shared && parity != 1 ? 0 : nearest_count(ideal[b], least_rows_[b], parity));
     }
 }
 
@@ -338,7 +360,9 @@ void RectangleCounter::set_fixed_rows(RectangleCounts& counts,
         forms(b, b) = 1.0 / std::sqrt(std::max(kSharedRow, ideal));
         targets[b] = ideal * forms(b, b);
         conditions.lower_bound[b] =
-            mergeable_[static_cast<std::size_t>(b)] != 0 && ideal < kSharedRow ? 0 : 1;
+            mergeable_[static_cast<std::size_t>(b)] != 0 && ideal < kSharedRow
+                ? 0
+                : least_rows_[static_cast<std::size_t>(b)];
     }
     for (Index i = 0; i < rectangles; ++i) {
         const int c = network_.cylinders[static_cast<std::size_t>(i)];

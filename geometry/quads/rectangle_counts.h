@@ -55,6 +55,7 @@ private:
 
     void set_wanted();
     void find_mergeable();
+    void set_least_rows();
     void set_cols(RectangleCounts& counts, double size) const;
     void widen_rings(RectangleCounts& counts, double size) const;
     void set_rows(RectangleCounts& counts, double size, const Context& context) const;
@@ -71,7 +72,8 @@ private:
     std::vector<LevelScale> scale_;  // Per band.
     std::vector<double> low_;        // Per band its lowest f,
     std::vector<double> high_;       // and its highest.
-    std::vector<char> mergeable_;    // Per band whether it may have no rows.
+    std::vector<char> mergeable_;    // Per band whether it may have no rows,
+    std::vector<int> least_rows_;    // and how many it has at least, if any.
     double wanted_ = 1.0;
     bool fixed_ = false;
     bool fixed_rows_ = false;
