@@ -16,9 +16,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kHeight = 1.0;
+constexpr double kHeight = 2.0;
 constexpr double kBoundary = 2.0;
 constexpr double kStay = 0.02;
+
+// What lies further than this beside the nearest point, in cells, lies beyond the surface's end.
+constexpr double kBeyond = 0.05;
 
 // A boundary that turns by more has a corner there.
 constexpr double kCornerCosine = 0.6;
@@ -167,9 +170,14 @@ void PlanarAnchors::update(const std::vector<Vector3d>& vertices, const Context&
             feet_[v] = foot;
         }
         const Vector3d& normal = feet_[v].normal;
+        const Vector3d away = vertices[v] - feet_[v].point;
+        const double aside = (away - normal.dot(away) * normal).norm();
         const double strength = kHeight * kHeight / (size_[v] * size_[v]);
-        held_[v] = {.weight = strength * normal * normal.transpose(),
-                    .place = feet_[v].point + height_[v] * normal};
+        held_[v].place = feet_[v].point + height_[v] * normal;
+        held_[v].weight = strength * normal * normal.transpose();
+        if (aside > kBeyond * size_[v]) {
+            held_[v].weight = strength * Matrix3d::Identity();
+        }
     });
 }
 

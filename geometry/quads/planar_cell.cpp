@@ -19,8 +19,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSquareness = 0.4;
-constexpr double kLength = 0.2;
+constexpr double kSquareness = 0.5;
+constexpr double kLength = 0.25;
 constexpr double kFairness = 0.1;
 
 // Steeper corners and shorter sides (against their start) pull no harder.

@@ -36,7 +36,7 @@ constexpr double kDescent = 1e-5;
 // down again afterwards.
 constexpr double kLeastDamping = 1e-8;
 constexpr double kFirstDamping = 1.0;
-constexpr double kMostDamping = 1e6;
+constexpr double kMostDamping = 1e10;
 constexpr double kDampingGrowth = 10.0;
 constexpr double kDampingDecay = 0.3;
 constexpr double kNearWorst = 0.1;  // Cells with an error of that part of the worst are damped.
@@ -265,7 +265,6 @@ PlanarSolver::Step PlanarSolver::step(double weight) {
     anchors_.update(state_.vertices, context_);
     firm_up_weak_cells();
     assemble(weight);
-    relax_damping();
     const Vertices steps = safe_steps();
     const double before =
         sum_of(cell_energies(state_.vertices, weight)) + anchor_energy(state_.vertices);
@@ -283,6 +282,7 @@ PlanarSolver::Step PlanarSolver::step(double weight) {
         }
         if (lower) {
             state_.vertices = std::move(moved);
+            relax_damping();
             return {.wanted = longest_, .taken = part};
         }
     }

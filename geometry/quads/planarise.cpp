@@ -32,6 +32,8 @@ using Vertices = std::vector<Vector3d>;
 constexpr double kFirstWeight = 0.3;
 constexpr double kLastWeight = 100.0;
 constexpr double kGrowth = 2.0;
+constexpr double kLastGrowth = 1.2;
+constexpr double kMostWeight = 3000.0;
 
 constexpr int kMostSteps = 120;
 constexpr double kSteady = 0.5;      // Cells: with longer steps the weight stays.
@@ -121,10 +123,11 @@ public:
                 continue;
             }
             waited = 0;
-            if (weight >= kLastWeight && step.taken > 0.0) {
+            const bool pressing = weight >= kLastWeight;
+            if (pressing && step.taken > 0.0 && step.wanted <= kSettled) {
                 solver_.raise_pulls(weight);
             }
-            weight = std::min(kGrowth * weight, kLastWeight);
+            weight = std::min((pressing ? kLastGrowth : kGrowth) * weight, kMostWeight);
         }
         return best;
     }
