@@ -58,6 +58,9 @@ void refuse_later_grids(const ObjectReader& reader, const geometry::GridOptions&
 }
 
 void read_grid(ObjectReader& reader, geometry::GridOptions& grid) {
+    // A width that nobody asked for may be another.
+    grid.may_narrow = grid.may_narrow && reader.get("strip_width_mm") == nullptr;
+    reader.boolean("may_narrow", grid.may_narrow);
     reader.number("strip_width_mm", grid.strip_width_mm, kPositiveLength);
     grid.all = read_rows_cols(reader);
     if (const json* value = reader.get("cylinders")) {

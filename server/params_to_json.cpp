@@ -25,6 +25,7 @@ json rows_cols_to_json(const geometry::RowsCols& counts) {
 json grid_to_json(const geometry::GridOptions& grid) {
     json result = rows_cols_to_json(grid.all);
     result["strip_width_mm"] = grid.strip_width_mm;
+    result["may_narrow"] = grid.may_narrow;
     result["cylinders"] = json::array();
     for (const geometry::RowsCols& counts : grid.per_cylinder) {
         result["cylinders"].push_back(rows_cols_to_json(counts));

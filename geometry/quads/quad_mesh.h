@@ -34,7 +34,7 @@ struct RowsCols {
 
 struct GridOptions {
     double strip_width_mm = 10.0;        // Mean width of strips: cells = area / width².
-    bool may_narrow = false;             // Narrower strips rather than none, where it must be.
+    bool may_narrow = true;              // Narrower strips rather than none, where it must be.
     RowsCols all;                        // Fixed counts for every cylinder, instead of the width.
     std::vector<RowsCols> per_cylinder;  // Stronger than `all`; may be shorter than the cylinders.
     Spacing spacing = Spacing::Uniform;

@@ -61,6 +61,7 @@ Model foliated(const Mesh& mesh) {
 GridOptions about(const Model& model, double cells) {
     GridOptions options;
     options.strip_width_mm = std::sqrt(model.area / cells);
+    options.may_narrow = false;
     return options;
 }
 
@@ -293,6 +294,62 @@ TEST(Conforming, SaysHowWideStripsMayBe) {
         options.strip_width_mm = std::stod(text.substr(text.find(before) + before.size()));
     }
     EXPECT_NO_THROW(build_quad_mesh(model.foliation, options));
+}
+
+TEST(Conforming, NarrowsStripsThatNobodyAskedFor) {
+    const Model& model = double_torus();
+    GridOptions options = about(model, 20.0);
+    options.may_narrow = true;
+    const QuadMesh mesh = build_quad_mesh(model.foliation, options);
+    EXPECT_GT(mesh.quads.size(), 20U);
+    EXPECT_TRUE(alternates(mesh));
+    EXPECT_EQ(std::count_if(mesh.warnings.begin(), mesh.warnings.end(),
+                            [](const std::string& warning) {
+                                return warning.find("wider ones can't go on") != std::string::npos;
+                            }),
+              1);
+}
+
+// The double torus with one cylinder, between two nodes, that has hardly any height.
+Model with_thin_cylinder() {
+    Model model = double_torus();
+    const MetricGraph& graph = double_torus().foliation.graph;
+    FoliationOptions options;
+    options.mode = FoliationMode::Pants;
+    options.puncture = PunctureChoice::None;
+    options.weights.emplace(graph.edges.size(), 1.0);
+    for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+        if (graph.edges[e].from != graph.edges[e].to) {
+            (*options.weights)[e] = 0.004;
+            break;
+        }
+    }
+    model.foliation = compute_foliation(to_mesh(make_sample("double-torus", 4000)), options);
+    return model;
+}
+
+TEST(Conforming, JoinsTheEndsOfACylinderThinnerThanARow) {
+    const Model model = with_thin_cylinder();
+    for (const double cells : {300.0, 1200.0}) {
+        const QuadMesh mesh = build_quad_mesh(model.foliation, about(model, cells));
+        const auto thin = std::find_if(mesh.grids.begin(), mesh.grids.end(),
+                                       [](const CylinderGrid& grid) { return grid.rows == 0; });
+        ASSERT_NE(thin, mesh.grids.end());
+        const auto cylinder = static_cast<int>(thin - mesh.grids.begin());
+        EXPECT_TRUE(std::none_of(
+            mesh.addresses.begin(), mesh.addresses.end(),
+            [cylinder](const QuadAddress& place) { return place.cylinder == cylinder; }));
+        const QuadNeighbours neighbours = find_neighbours(mesh.quads);
+        EXPECT_EQ(neighbours.faults, 0);
+        EXPECT_EQ(neighbours.boundary_edges, 0);
+        int excess = 0;  // Three-prong points may have come together.
+        for (const auto& [valence, count] : inner_valences(mesh)) {
+            excess += count * (valence - 4);
+        }
+        EXPECT_EQ(excess, -4 * model.euler);
+        EXPECT_TRUE(alternates(mesh));
+        expect_simple_threads(mesh);
+    }
 }
 
 TEST(Conforming, HonoursFixedCountsOrSaysWhyNot) {

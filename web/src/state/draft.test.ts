@@ -45,7 +45,7 @@ test('sizes must be positive numbers, and a strip narrower than a third of the s
 test('materials are only named when chosen', () => {
   assert.deepEqual(draftParams(kNewDraft), {
     scale: { longest_side_mm: 300 },
-    grid: { strip_width_mm: 10 },
+    grid: { strip_width_mm: 10, may_narrow: true },
     weave: { pattern: 'plain' },
   });
   assert.deepEqual(draftParams({ ...kNewDraft, warp: 'felt' })['material'], { warp: 'felt' });

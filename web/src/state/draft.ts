@@ -136,7 +136,7 @@ export function draftParams(draft: Draft): Readonly<Record<string, unknown>> {
   return {
     scale: { longest_side_mm: positive(draft.longestSideMm) },
     ...(Object.keys(foliation).length === 0 ? {} : { foliation }),
-    grid: { strip_width_mm: positive(draft.stripWidthMm) },
+    grid: { strip_width_mm: positive(draft.stripWidthMm), may_narrow: true },
     weave: { pattern: draft.pattern },
     ...(Object.keys(material).length === 0 ? {} : { material }),
   };
