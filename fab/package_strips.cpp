@@ -137,7 +137,9 @@ std::string weave_json(const JobResult& job) {
     const json file = {{"format", "leafcutter-weave/1"},
                        {"pattern", pattern_json(job.params.weave)},
                        {"warp_on_top", job.weave.warp_on_top},
-                       {"seams", job.weave.seams}};
+                       {"seams", job.weave.seams},
+                       {"seam_mm", job.weave.seam_mm},
+                       {"shortest_seam_proven", job.weave.shortest}};
     return file.dump() + "\n";
 }
 

@@ -87,9 +87,15 @@ std::optional<Trial> HoleSearch::attempt(std::size_t holes,
         trial.mode = mode == FoliationMode::Auto ? natural_mode(opened) : mode;
         trial.name = name_with_holes(trial.mode, opened.punctures.size() - part_.punctures.size());
         trial.removed_area = opened.removed_area;
-        Foliation foliation = foliate_part(opened, trial.mode, options_, quiet);
+        const bool is_final = coarse_.mesh.positions.size() == part_.mesh.positions.size();
+        FoliationOptions options = options_;
+        if (!is_final) {  // What is done for the grid costs time and hardly moves the spread.
+            options.junctions.reset();
+            options.even_cells = false;
+        }
+        Foliation foliation = foliate_part(opened, trial.mode, options, quiet);
         trial.spread = foliation.spread;
-        if (coarse_.mesh.positions.size() == part_.mesh.positions.size()) {
+        if (is_final) {
             trial.result = std::move(foliation);
         }
         return trial;

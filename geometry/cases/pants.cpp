@@ -13,6 +13,7 @@
 #include "geometry/cases/whole_columns.h"
 #include "geometry/laplacian.h"
 #include "geometry/pants/coarse_maps.h"
+#include "geometry/pants/even_maps.h"
 #include "geometry/pants/hierarchy.h"
 #include "geometry/pants/near_points.h"
 #include "geometry/pants/prepare_surface.h"
@@ -40,6 +41,8 @@ constexpr double kLeastEdgeWeight = 1e-3;
 constexpr double kNotableExcess = 0.1;
 constexpr double kImpossibleExcess = 1.0;
 constexpr double kAreaTolerance = 1e-6;
+// Of a grid, where evening cells isn't told how fine it will be.
+constexpr double kUsualCells = 1000.0;
 // A cylinder with less of the surface has all but collapsed.
 constexpr double kSqueezedShare = 1e-6;
 
@@ -253,6 +256,11 @@ Foliation suit_junctions(Foliation foliation,
                               refoliate, context);
 }
 
+// Weights that are given, or lead singular points, stay.
+bool is_evened(const FoliationOptions& options) {
+    return options.even_cells && !options.weights && options.near.empty();
+}
+
 // The first candidate of this hierarchy that passes all checks. What others failed with goes into
 // `failures`.
 std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
@@ -260,10 +268,16 @@ std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
                                         const FoliationOptions& options,
                                         const Context& context,
                                         std::vector<std::string>& failures) {
+    const double cells = options.junctions ? options.junctions->cells : kUsualCells;
+    double variation = 0.0;  // Before weights are changed for it.
     std::vector<CoarseMap> maps;
     try {
         maps = solve_coarsest(hierarchy,
                               {options.pants, options.function, options.weights, attempt}, context);
+        if (is_evened(options)) {
+            variation = forecast_grid(hierarchy.levels.back(), maps.front().map, cells).variation;
+            maps = even_maps(hierarchy, std::move(maps), cells, context);
+        }
         if (!options.near.empty()) {
             maps = nearest_maps(hierarchy, std::move(maps),
                                 {options.near, options.weights.has_value()}, context);
@@ -281,6 +295,11 @@ std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
             if (options.junctions) {
                 foliation =
                     suit_junctions(std::move(foliation), hierarchy, maps[i], options, context);
+            }
+            if (is_evened(options)) {
+                foliation.evened = {
+                    variation,
+                    forecast_grid(hierarchy.levels.back(), maps[i].map, cells).variation};
             }
             add_alternatives(foliation, maps, i);
             return foliation;

@@ -14,6 +14,7 @@
 #include "geometry/quads/chart_sampler.h"
 #include "geometry/quads/conforming_mesh.h"
 #include "geometry/quads/conforming_rectangles.h"
+#include "geometry/quads/even_columns.h"
 #include "geometry/quads/graded_grid.h"
 #include "geometry/quads/grid.h"
 #include "geometry/quads/half_sag.h"
@@ -32,10 +33,6 @@ using Eigen::Vector3d;
 // Of the number of cells, where wide ones would fold over.
 constexpr int kMostDoublings = 5;
 
-void refuse(const std::string& path, const std::string& what) {
-    throw Error(ErrorKind::NotSupported, "not-supported-yet", path + ": " + what);
-}
-
 void check_options(const Foliation& foliation, const GridOptions& options) {
     if (!std::isfinite(options.strip_width_mm) || options.strip_width_mm <= 0.0) {
         throw Error(
@@ -46,9 +43,6 @@ void check_options(const Foliation& foliation, const GridOptions& options) {
         throw Error(ErrorKind::BadOption, "too-many-cylinders",
                     fmt::format("grid.cylinders: has {} entries, but the surface has {} cylinders",
                                 options.per_cylinder.size(), foliation.cylinders.size()));
-    }
-    if (options.even_cells) {
-        refuse("grid.even_cells", "evening out cells is not built yet; use false");
     }
 }
 
@@ -201,7 +195,8 @@ JoinedMesh join_rings(QuadMesh& mesh,
     if (options.junctions == Junctions::Independent) {
         return {};
     }
-    JoinedMesh joined = join_cylinders(foliation, options, context);
+    JoinedMesh joined = options.even_cells ? join_evenly(foliation, options, context)
+                                           : join_cylinders(foliation, options, context);
     merge_joined(joined, join_rectangles(foliation, options, context));
     if (!joined.cylinders.empty()) {
         mesh.vertices = std::move(joined.vertices);
