@@ -18,6 +18,7 @@
 #include "geometry/quads/quad_edges.h"
 #include "geometry/quads/relaxed_arcs.h"
 #include "geometry/quads/shared_vertices.h"
+#include "geometry/quads/strip_width.h"
 #include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
@@ -35,6 +36,8 @@ constexpr double kMostRefined = 4.0;
 // Quads that may fold over at such edges.
 constexpr double kFoldedShare = 0.005;
 constexpr double kFewFolded = 1.0;
+// The period of a plain weave: the least that a surface can carry everywhere.
+constexpr int kColours = 2;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -195,6 +198,7 @@ JunctionWish wish_of(const Foliation& foliation, const GridOptions& options, dou
     JunctionWish wish;
     wish.cells = area / (options.strip_width_mm * options.strip_width_mm);
     wish.parity = options.parity;
+    wish.period = options.period;
     wish.counts.assign(foliation.cylinders.size(), options.all);
     wish.paths.assign(foliation.cylinders.size(), "grid");
     for (std::size_t c = 0; c < options.per_cylinder.size(); ++c) {
@@ -207,12 +211,6 @@ JunctionWish wish_of(const Foliation& foliation, const GridOptions& options, dou
     return wish;
 }
 
-// Two digits more than a ruler shows, downwards: so wide is still all right.
-double rounded_down(double width) {
-    const double digit = std::pow(10.0, std::floor(std::log10(width)) - 3.0);
-    return std::floor(width / digit) * digit;
-}
-
 // Tries ever narrower strips until the quads carry the topology and none, or few, fold over.
 class SizeSearch {
 public:
@@ -222,6 +220,13 @@ public:
           options_(options),
           area_(joined_area(foliation, network)),
           counter_(foliation, network, wish_of(foliation, options, area_)) {}
+
+    // Whether strips as wide as wanted can carry the topology.
+    bool fits(const Context& context) const {
+        const double size = counter_.wanted_cells();
+        return counter_.has_fixed_counts() ||
+               counter_.choose(size, context).cells <= kMostExcess * size;
+    }
 
     JoinedMesh run(const Context& context) {
         double size = counter_.wanted_cells();
@@ -263,7 +268,8 @@ private:
 
     JoinedMesh accepted(JoinedMesh mesh, const JunctionCounts& counts, double size) const {
         if (size > counter_.wanted_cells()) {
-            const double width = rounded_down(std::sqrt(area_ / size));
+            const double width =
+                rounded_down(options_.strip_width_mm * std::sqrt(counter_.wanted_cells() / size));
             if (!options_.may_narrow) {
                 refuse(width, size);
             }
@@ -315,7 +321,12 @@ JoinedMesh join_cylinders(const Foliation& foliation,
     if (network.cylinders.empty()) {
         return {};
     }
-    return SizeSearch(foliation, network, options).run(context);
+    GridOptions wish = options;
+    if (options.parity == Parity::Even && options.period != kColours &&
+        !SizeSearch(foliation, network, options).fits(context)) {
+        wish.period = kColours;  // The pattern breaks along a column.
+    }
+    return SizeSearch(foliation, network, wish).run(context);
 }
 
 }  // namespace leafcutter::geometry

@@ -23,6 +23,7 @@
 #include "geometry/quads/quad_edges.h"
 #include "geometry/quads/rectangle_counts.h"
 #include "geometry/quads/rectangle_rows.h"
+#include "geometry/quads/strip_width.h"
 #include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
@@ -365,12 +366,6 @@ RectangleWish wish_of(const Foliation& foliation, const GridOptions& options, do
         }
     }
     return wish;
-}
-
-// Two digits more than a ruler shows, downwards: so wide is still all right.
-double rounded_down(double width) {
-    const double digit = std::pow(10.0, std::floor(std::log10(width)) - 3.0);
-    return std::floor(width / digit) * digit;
 }
 
 // Tries ever narrower strips until the quads carry the topology and none, or few, fold over.

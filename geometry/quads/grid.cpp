@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "geometry/quads/spacing.h"
+#include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
 
@@ -22,6 +23,14 @@ constexpr double kAlignedDeg = 1.0;
 // Weight of the slant against the logarithms of aspect and cell count: 1 degree is as bad as a cell
 // 7 % too long.
 constexpr double kSlantWeight = 4.0;
+// Strips are as wide as asked for, in the mean, to half this; beyond, 10 % more cells are as bad
+// as cells 34 % too long.
+constexpr double kCountTolerance = 0.03;
+constexpr double kCountWeight = 20.0;
+// First the neighbourhood of the ideal counts is searched, so far in their logarithms,
+// and if none of those will do, ever farther.
+constexpr double kFirstReach = 0.05;
+constexpr double kLastReach = 8.0;
 // Pillowcase: a column that comes back to itself after one round more is as bad as a cell 7 % too
 // long; ten times as many rounds, as one 26 % too long.
 constexpr double kRoundsWeight = 0.1;
@@ -93,18 +102,6 @@ void check_size(double cells, const std::string& path) {
     }
 }
 
-std::vector<int> counts_near(double wanted, int least, const std::optional<int>& fixed) {
-    if (fixed) {
-        return {*fixed};
-    }
-    std::vector<int> counts;
-    const int low = static_cast<int>(std::floor(wanted)) - 2;
-    for (int count = std::max(least, low); count <= std::max(least + 3, low + 5); ++count) {
-        counts.push_back(count);
-    }
-    return counts;
-}
-
 struct Candidate {
     int rows = 0;
     int cols = 0;
@@ -116,11 +113,16 @@ bool is_slanted(ChartShape shape) {
     return shape == ChartShape::Torus || shape == ChartShape::Pillowcase;
 }
 
+// Whether columns may come out shifted into one another: then they are even ones.
+bool may_shift(const Cylinder& chart) {
+    return is_slanted(chart.shape) &&
+           std::abs(degrees(std::atan2(chart.shear, chart.height))) > kAlignedDeg;
+}
+
 // Whole column shifts to consider for a slanted chart of `cols` columns: none if it is (nearly)
-// square on.
+// square on; else the nearest of both parities.
 std::vector<int> shifts_near(const Cylinder& chart, int cols) {
-    const bool aligned = std::abs(degrees(std::atan2(chart.shear, chart.height))) <= kAlignedDeg;
-    if (!is_slanted(chart.shape) || aligned) {
+    if (!may_shift(chart)) {
         return {0};
     }
     const int low = static_cast<int>(std::floor(chart.shear * cols / chart.width));
@@ -151,43 +153,84 @@ std::vector<double> even_levels(double length, int count) {
     return levels;
 }
 
-// `aspect`: mean height over mean width of the chart on the surface.
-Candidate best_candidate(const Cylinder& chart,
-                         double aspect,
-                         const GridWish& wish,
-                         const Least& least) {
-    double cells = wish.cells;
-    if (wish.counts.rows && wish.counts.cols) {
-        cells = static_cast<double>(*wish.counts.rows) * *wish.counts.cols;
-    } else if (wish.counts.rows) {
-        cells = square(*wish.counts.rows) / aspect;
-    } else if (wish.counts.cols) {
-        cells = square(*wish.counts.cols) * aspect;
+// Looks for the grid that is least distorted: as many cells as wished, square, and upright. Exact:
+// what is not looked at costs more than what is found.
+class GridSearch {
+public:
+    // `aspect`: mean height over mean width of the chart on the surface.
+    GridSearch(const Cylinder& chart, double aspect, const GridWish& wish, const Least& least)
+        : chart_(chart), aspect_(aspect), wish_(wish), least_(least), cells_(wish.cells) {
+        if (wish.counts.rows && wish.counts.cols) {
+            cells_ = static_cast<double>(*wish.counts.rows) * *wish.counts.cols;
+        } else if (wish.counts.rows) {
+            cells_ = square(*wish.counts.rows) / aspect;
+        } else if (wish.counts.cols) {
+            cells_ = square(*wish.counts.cols) * aspect;
+        }
+        check_size(cells_, wish.path);
     }
-    check_size(cells, wish.path);
-    const bool torus = chart.shape == ChartShape::Torus;
-    Candidate best;
-    for (const int rows : counts_near(std::sqrt(cells * aspect), least.rows, wish.counts.rows)) {
-        for (const int cols :
-             counts_near(std::sqrt(cells / aspect), least.cols, wish.counts.cols)) {
-            for (const int shift : shifts_near(chart, cols)) {
-                if ((least.even_cols && cols % 2 != 0) ||
-                    (least.even_cols && torus && (rows + shift) % 2 != 0)) {
-                    continue;
-                }
-                const double count = static_cast<double>(rows) * cols;
-                const double cost =
-                    square(std::log(count / cells)) + square(std::log(aspect * cols / rows)) +
-                    square(kSlantWeight * slant_of(chart, cols, shift)) +
-                    square(kRoundsWeight * std::log(rounds_of(chart.shape, cols, shift)));
-                if (best.rows == 0 || cost < best.cost) {
-                    best = {.rows = rows, .cols = cols, .shift = shift, .cost = cost};
+
+    // No rows if none will do.
+    Candidate best() {
+        for (double reach = kFirstReach; best_.rows == 0 && reach < kLastReach; reach *= 2.0) {
+            look_within(reach);
+        }
+        if (best_.rows > 0) {
+            const double size = kCountTolerance + std::sqrt(best_.cost / kCountWeight);
+            look_within(0.5 * (size + std::sqrt(best_.cost)));
+        }
+        return best_;
+    }
+
+private:
+    // Counts whose logarithms are at most `reach` from the ideal ones, and a few more.
+    void look_within(double reach) {
+        const auto range = [reach](double ideal, int least, const std::optional<int>& fixed) {
+            const int low = static_cast<int>(std::floor(ideal * std::exp(-reach))) - 1;
+            const int high = static_cast<int>(std::ceil(ideal * std::exp(reach))) + 1;
+            return fixed ? std::pair{*fixed, *fixed}
+                         : std::pair{std::max(least, low), std::max(least + 3, high)};
+        };
+        const auto rows = range(std::sqrt(cells_ * aspect_), least_.rows, wish_.counts.rows);
+        const auto cols = range(std::sqrt(cells_ / aspect_), least_.cols, wish_.counts.cols);
+        for (int col = cols.first; col <= cols.second; ++col) {
+            if (least_.even_cols && col % 2 != 0) {
+                continue;
+            }
+            for (const int shift : shifts_near(chart_, col)) {
+                for (int row = rows.first; row <= rows.second; ++row) {
+                    look_at(row, col, shift);
                 }
             }
         }
     }
-    return best;
-}
+
+    void look_at(int rows, int cols, int shift) {
+        const bool torus = chart_.shape == ChartShape::Torus;
+        if (least_.even_cols && torus && (rows + shift) % 2 != 0) {
+            return;
+        }
+        const double count = static_cast<double>(rows) * cols;
+        const double off = std::max(0.0, std::abs(std::log(count / cells_)) - kCountTolerance);
+        const double stretch = std::log(aspect_ * cols / rows);
+        if (!wish_.counts.rows && !wish_.counts.cols && std::abs(stretch) > wish_.most_stretch) {
+            return;
+        }
+        const double cost = kCountWeight * square(off) + square(stretch) +
+                            square(kSlantWeight * slant_of(chart_, cols, shift)) +
+                            square(kRoundsWeight * std::log(rounds_of(chart_.shape, cols, shift)));
+        if (best_.rows == 0 || cost < best_.cost) {
+            best_ = {.rows = rows, .cols = cols, .shift = shift, .cost = cost};
+        }
+    }
+
+    const Cylinder& chart_;
+    double aspect_;
+    const GridWish& wish_;
+    const Least& least_;
+    double cells_;
+    Candidate best_;
+};
 
 // A chart that is only slanted by its own angle, not by rounding: said as that angle.
 double shear_deg(const Cylinder& chart, const Candidate& chosen) {
@@ -222,8 +265,14 @@ CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
     const LevelScale f_scale(chart, Axis::F, 0.0);
     const double own_slant = is_slanted(chart.shape) ? chart.shear / chart.height : 0.0;
     const LevelScale g_scale(chart, Axis::G, own_slant);
-    const double aspect = f_scale.total_mm() / g_scale.total_mm();
-    const Candidate chosen = best_candidate(chart, aspect, wish, least);
+    // Leaves of F* are as long as the chart is high, in the mean, those of F as it is wide.
+    const double height =
+        may_shift(chart) ? g_scale.mean_even_leaf_mm() : g_scale.mean_leaf_mm();
+    const double width = f_scale.mean_leaf_mm();
+    const double aspect = height / width;
+    GridWish even = wish;
+    even.cells *= surface_area(chart.mesh) / (height * width);
+    const Candidate chosen = GridSearch(chart, aspect, even, least).best();
     if (chosen.rows == 0) {
         throw Error(ErrorKind::BadOption, "odd-rows",
                     fmt::format("{}.rows: {} closes the rings of this torus with a fault in the "

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct GridWish {
     double cells = 1.0;  // Wanted number, if `counts` leaves it open.
     RowsCols counts;     // Fixed ones.
     Parity parity = Parity::Even;
+    // Of cells, how much longer than wide or wider than long they may be, as a logarithm. Not for
+    // fixed counts.
+    double most_stretch = std::numeric_limits<double>::infinity();
     std::string path = "grid";  // Of `counts` in the job's parameters, for messages.
 };
 

@@ -22,6 +22,7 @@
 #include "geometry/quads/planarise.h"
 #include "geometry/quads/quad_edges.h"
 #include "geometry/quads/quality.h"
+#include "geometry/quads/strip_width.h"
 #include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
@@ -30,8 +31,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Of the number of cells, where wide ones would fold over.
-constexpr int kMostDoublings = 5;
+// From a number of cells that would fold over to the next, and how often.
+constexpr double kFiner = 1.5;
+constexpr int kMostSizes = 10;
+// More cells than asked for by this part is another strip width.
+constexpr double kMostExcess = 1.1;
+// Cells of a surface of one cylinder are not longer than this times their width, if their number is
+// free.
+const double kMostStretch = std::log(2.0);
 
 void check_options(const Foliation& foliation, const GridOptions& options) {
     if (!std::isfinite(options.strip_width_mm) || options.strip_width_mm <= 0.0) {
@@ -109,6 +116,7 @@ struct Work {
     const Cylinder& chart;
     const ChartSampler& sampler;
     double area = 0.0;
+    bool alone = false;  // No other cylinder belongs to the surface.
 };
 
 void add_cylinder(QuadMesh& mesh,
@@ -141,33 +149,55 @@ CylinderGrid graded(const Work& work,
                        context);
 }
 
-// The cylinder's quads at the wished size, or smaller ones where those would face inwards: a few
-// cells can't follow a small cylinder that bends sharply.
+// Strips narrower than asked for: said, or refused if only the asked width will do.
+void tell_narrow(QuadMesh& mesh, const Work& work, double cells, const GridOptions& options) {
+    const double width = rounded_down(std::sqrt(work.area / cells));
+    if (!options.may_narrow && work.alone) {
+        throw Error(ErrorKind::BadOption, "strips-too-wide",
+                    fmt::format("grid.strip_width_mm: strips of {:.4g} mm are too wide to close "
+                                "round the surface; use at most {:.4g} mm (about {:.0f} quads)",
+                                options.strip_width_mm, width, cells));
+    }
+    mesh.warnings.push_back(fmt::format(
+        "cylinder {}: has narrower strips than asked for, {:.4g} mm, as wider ones would not close "
+        "or fold over",
+        work.cylinder, width));
+}
+
+// The cylinder's quads at the wished size, or smaller ones where so few can't close the surface or
+// would face inwards: a few cells can't follow a small cylinder that bends sharply.
 void add_fine_enough(QuadMesh& mesh,
                      const Work& work,
                      GridWish wish,
                      const GridOptions& options,
                      const Context& context) {
+    const double wished = wish.cells;
+    const bool free = !wish.counts.rows && !wish.counts.cols;
+    if (work.alone) {
+        wish.most_stretch = kMostStretch;
+    }
     const bool may_refine = !wish.counts.rows || !wish.counts.cols;
-    for (int doublings = 0;; ++doublings) {
+    for (int tries = 1;; ++tries) {
         CylinderGrid grid = choose_grid(work.chart, wish);
+        const double cells = static_cast<double>(grid.rows) * grid.cols;
+        if (free && cells > kMostExcess * wish.cells && tries < kMostSizes) {
+            wish.cells = cells;
+            continue;
+        }
         if (options.spacing != Spacing::Uniform) {
             grid = graded(work, grid, options, context);
         }
         try {
             add_cylinder(mesh, work, grid, options, context);
         } catch (const Error& error) {
-            if (error.code() != "quads-inverted" || !may_refine || doublings == kMostDoublings) {
+            if (error.code() != "quads-inverted" || !may_refine || tries >= kMostSizes) {
                 throw;
             }
-            wish.cells *= 2.0;
+            wish.cells *= kFiner;
             continue;
         }
-        if (doublings > 0) {
-            mesh.warnings.push_back(
-                fmt::format("cylinder {}: has narrower strips than asked for, as wider ones would "
-                            "fold over",
-                            work.cylinder));
+        if (wish.cells > wished) {
+            tell_narrow(mesh, work, cells, options);
         }
         return;
     }
@@ -231,7 +261,7 @@ QuadMesh build_quad_mesh(const Foliation& foliation,
         context.check();
         const ChartSampler sampler(chart);
         const Work work{
-            .cylinder = i, .chart = chart, .sampler = sampler, .area = surface_area(chart.mesh)};
+            .cylinder = i, .chart = chart, .sampler = sampler, .area = surface_area(chart.mesh), .alone = foliation.cylinders.size() == 1};
         context.check();
         add_fine_enough(mesh, work, wish_for(i, work.area, options), options, context);
     }
