@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "fab/markup.h"
 #include "fab/package_files.h"
 #include "fab/totals.h"
-#include "fab/utf8.h"
 
 namespace leafcutter::fab {
 
@@ -31,32 +31,6 @@ svg.weave { max-width: 100%; border: 1px solid #999; }
 @media print { body { margin: 0; max-width: none; font-size: 11px; } h2 { break-after: avoid; }
                table, svg { break-inside: avoid; } }
 )";
-
-std::string escaped(std::string_view text) {
-    std::string out;
-    for (const char letter : valid_utf8(text)) {
-        switch (letter) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            case '\'':
-                out += "&#39;";
-                break;
-            default:
-                out += letter;
-        }
-    }
-    return out;
-}
 
 // A colour of a material store goes into style attributes: "#rrggbb" or nothing.
 std::string colour_of(const Material& material) {

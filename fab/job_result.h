@@ -18,6 +18,7 @@
 #include "geometry/foliation.h"
 #include "geometry/leaves.h"
 #include "geometry/quads/quality.h"
+#include "geometry/quads/two_sided.h"
 #include "geometry/repair.h"
 #include "geometry/topology.h"
 
@@ -44,6 +45,13 @@ struct OpenedHole {
     double radius_mm = 0.0;    // On the surface.
 };
 
+// How near a singular point came to where one was wanted.
+struct ReachedPlace {
+    int input_vertex = -1;     // As it was asked for; for a position, the vertex there.
+    int singularity = -1;      // Of the foliation's; -1 for a pole, which is cut out.
+    double distance_mm = 0.0;  // Along the surface.
+};
+
 struct JobResult {
     JobParams params;
     InputFacts input;
@@ -52,8 +60,10 @@ struct JobResult {
     std::vector<Part> parts;  // One for each component.
     geometry::Foliation foliation;
     std::vector<OpenedHole> holes;
+    std::vector<ReachedPlace> reached;
     geometry::QuadMesh quads;
     geometry::QualityReport quality;
+    geometry::TwoSidedDistance two_sided;
     double surface_area_mm2 = 0.0;
     double woven_area_mm2 = 0.0;  // Of the cylinders: without holes, poles and parts left out.
     std::vector<geometry::Leaf> leaves;

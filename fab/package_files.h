@@ -11,6 +11,7 @@ namespace leafcutter::fab {
 std::string quads_obj(const JobResult& job);
 std::string surface_ply(const JobResult& job);
 std::string leaves_json(const JobResult& job);
+std::string quality_json(const JobResult& job);
 std::string strips_json(const JobResult& job);
 std::string weave_json(const JobResult& job);
 std::string layout_json(const JobResult& job);

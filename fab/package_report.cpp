@@ -10,35 +10,13 @@
 #include "fab/package_files.h"
 #include "fab/totals.h"
 #include "geometry/error.h"
+#include "geometry/foliation_names.h"
 
 namespace leafcutter::fab {
 
 namespace {
 
 using json = nlohmann::ordered_json;
-using geometry::FoliationMode;
-
-const char* name_of(FoliationMode mode) {
-    switch (mode) {
-        case FoliationMode::Auto:
-            return "auto";
-        case FoliationMode::Pants:
-            return "pants";
-        case FoliationMode::OneForm:
-            return "one-form";
-        case FoliationMode::Disk:
-            return "disk";
-        case FoliationMode::Annulus:
-            return "annulus";
-        case FoliationMode::Torus:
-            return "torus";
-        case FoliationMode::SpherePolar:
-            return "sphere-polar";
-        case FoliationMode::SpherePillowcase:
-            return "sphere-pillowcase";
-    }
-    return "auto";
-}
 
 const char* name_of(geometry::ChartShape shape) {
     switch (shape) {
@@ -156,6 +134,16 @@ json alternatives_json(const JobResult& job) {
     return result;
 }
 
+json reached_json(const JobResult& job) {
+    json all = json::array();
+    for (const ReachedPlace& reached : job.reached) {
+        all.push_back({{"vertex", reached.input_vertex},
+                       {"singularity", reached.singularity < 0 ? json() : json(reached.singularity)},
+                       {"distance_mm", reached.distance_mm}});
+    }
+    return all;
+}
+
 json foliation_json(const JobResult& job) {
     const geometry::Foliation& foliation = job.foliation;
     json weights = json::array();
@@ -170,12 +158,17 @@ json foliation_json(const JobResult& job) {
     for (const auto& [position, prongs] : foliation.singularities) {
         singularities.push_back({{"position", point_json(position)}, {"prongs", prongs}});
     }
-    return {
-        {"mode", name_of(foliation.mode)},        {"graph", graph_json(foliation.graph)},
-        {"weights", std::move(weights)},          {"energy", foliation.energy},
-        {"iterations", foliation.iterations},     {"singularities", std::move(singularities)},
-        {"punctures", holes_json(job.holes)},     {"cell_spread", spread_json(foliation.spread)},
-        {"alternatives", alternatives_json(job)}, {"cylinders", std::move(cylinders)}};
+    return {{"mode", geometry::name_of(foliation.mode)},
+            {"graph", graph_json(foliation.graph)},
+            {"weights", std::move(weights)},
+            {"energy", foliation.energy},
+            {"iterations", foliation.iterations},
+            {"singularities", std::move(singularities)},
+            {"reached", reached_json(job)},
+            {"punctures", holes_json(job.holes)},
+            {"cell_spread", spread_json(foliation.spread)},
+            {"alternatives", alternatives_json(job)},
+            {"cylinders", std::move(cylinders)}};
 }
 
 json max_avg(const geometry::MaxAvg& value) {
@@ -185,23 +178,38 @@ json max_avg(const geometry::MaxAvg& value) {
 json quality_json(const geometry::Quality& quality) {
     return {{"quads", quality.quads},
             {"angle_deviation_deg", max_avg(quality.angle_deviation_deg)},
+            {"angle_deviation_interior_deg", max_avg(quality.angle_deviation_interior_deg)},
+            {"angle_deviation_singular_deg", max_avg(quality.angle_deviation_singular_deg)},
+            {"angle_deviation_boundary_deg", max_avg(quality.angle_deviation_boundary_deg)},
+            {"angle_deviation_corner_deg", max_avg(quality.angle_deviation_corner_deg)},
             {"angle_deviation_bound_deg", {{"avg", quality.angle_deviation_bound_deg}}},
             {"crossing_angle_deviation_deg", max_avg(quality.crossing_angle_deviation_deg)},
             {"surface_distance_percent", max_avg(quality.surface_distance_percent)},
+            {"distance_diagonal_percent", max_avg(quality.distance_diagonal_percent)},
             {"area_distortion_percent", {{"avg", quality.area_distortion_percent}}},
+            {"region_distortion_percent", max_avg(quality.region_distortion_percent)},
             {"planarity_percent", max_avg(quality.planarity_percent)},
             {"cell_area_variation", quality.cell_area_variation},
             {"largest_cell_edge", quality.largest_cell_edge}};
 }
 
-json qualities_json(const geometry::QualityReport& report) {
+json two_sided_json(const geometry::TwoSidedDistance& distance) {
+    return {{"quads_to_surface", max_avg(distance.quads_to_surface)},
+            {"surface_to_quads", max_avg(distance.surface_to_quads)},
+            {"both", max_avg(distance.both)}};
+}
+
+json qualities_json(const JobResult& job) {
+    const geometry::QualityReport& report = job.quality;
     json cylinders = json::array();
     for (std::size_t i = 0; i < report.per_cylinder.size(); ++i) {
         json cylinder = quality_json(report.per_cylinder[i]);
         cylinder["cylinder"] = i;
         cylinders.push_back(std::move(cylinder));
     }
-    return {{"overall", quality_json(report.overall)}, {"cylinders", std::move(cylinders)}};
+    json overall = quality_json(report.overall);
+    overall["two_sided_diagonal_percent"] = two_sided_json(job.two_sided);
+    return {{"overall", std::move(overall)}, {"cylinders", std::move(cylinders)}};
 }
 
 json planar_figures_json(const geometry::PlanarisationPrice::Figures& figures) {
@@ -315,7 +323,7 @@ std::string report_json(const JobResult& job) {
                  {"surface", surface_json(job)},
                  {"topology", topology_json(job)},
                  {"foliation", foliation_json(job)},
-                 {"quality", qualities_json(job.quality)},
+                 {"quality", qualities_json(job)},
                  {"strips", strips_summary_json(job)},
                  {"nesting", nesting_json(job.layout)},
                  {"cut", cut_json(job)},

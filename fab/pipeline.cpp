@@ -24,6 +24,8 @@
 #include "geometry/io/read_mesh.h"
 #include "geometry/leaves.h"
 #include "geometry/quads/quality.h"
+#include "geometry/quads/two_sided.h"
+#include "geometry/surface_measures.h"
 
 namespace leafcutter::fab {
 
@@ -35,6 +37,9 @@ using geometry::ErrorKind;
 
 // Distant parts of a piece stay this much more than the kerf apart, so that the beam parts them.
 constexpr double kSelfGapMm = 0.3;
+
+// Columns that close in multiples of longer ones would hardly ever fit.
+constexpr int kLongestPeriod = 8;
 
 // Leaves are for looking at: more than about this many points and every second one is left out.
 constexpr std::size_t kMostLeafCells = 60'000;
@@ -73,12 +78,7 @@ const Material& material_named(std::span<const Material> materials,
 double woven_area(const geometry::Foliation& foliation) {
     double area = 0.0;
     for (const geometry::Cylinder& cylinder : foliation.cylinders) {
-        for (const auto& [a, b, c] : cylinder.mesh.triangles) {
-            const auto at = [&](int vertex) -> const Eigen::Vector3d& {
-                return cylinder.mesh.positions[static_cast<std::size_t>(vertex)];
-            };
-            area += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
-        }
+        area += geometry::surface_area(cylinder.mesh);
     }
     return area;
 }
@@ -171,16 +171,17 @@ private:
 
     void foliate(const Context& context) {
         const geometry::FoliationOptions options =
-            foliation_options(result_.params.foliation, {vertex_of_input_, result_.topology});
+            foliation_options(result_.params.foliation,
+                              {vertex_of_input_, result_.topology, &mesh_, result_.input.scale});
         result_.foliation = geometry::compute_foliation(mesh_, options, context);
         warnings_.insert(warnings_.end(), result_.foliation.warnings.begin(),
                          result_.foliation.warnings.end());
         assign_cylinders(mesh_, result_.topology, result_.foliation.cylinders, result_.parts);
-        find_places();
+        find_places(options.near);
     }
 
     // What users call the vertices that the foliation names.
-    void find_places() {
+    void find_places(const std::vector<int>& wanted) {
         const std::vector<int> input_of_vertex =
             input_of_vertices(vertex_of_input_, mesh_.n_vertices());
         for (const geometry::Puncture& puncture : result_.foliation.punctures) {
@@ -189,19 +190,34 @@ private:
                  .position = mesh_.point(geometry::Mesh::VertexHandle(puncture.vertex)),
                  .radius_mm = puncture.radius});
         }
+        for (const geometry::ReachedPoint& reached : result_.foliation.reached) {
+            const auto k = std::find(wanted.begin(), wanted.end(), reached.vertex) - wanted.begin();
+            const PlaceParams& place = result_.params.foliation.near[static_cast<std::size_t>(k)];
+            result_.reached.push_back(
+                {.input_vertex = place.vertex.value_or(
+                     input_of_vertex[static_cast<std::size_t>(reached.vertex)]),
+                 .singularity = reached.singularity,
+                 .distance_mm = reached.distance});
+        }
     }
 
     void make_quads(const Context& context) {
-        result_.quads = geometry::build_quad_mesh(result_.foliation, result_.params.grid, context);
+        geometry::GridOptions grid = result_.params.grid;
+        const int period = pattern_period(result_.params.weave);
+        grid.period = period == 1 || period > kLongestPeriod ? 2 : period;
+        result_.quads = geometry::build_quad_mesh(result_.foliation, grid, context);
         if (!result_.quads.charts.empty()) {
             result_.foliation.cylinders = std::move(result_.quads.charts);
         }
         warnings_.insert(warnings_.end(), result_.quads.warnings.begin(),
                          result_.quads.warnings.end());
-        const geometry::ClosestPoint surface(geometry::to_triangle_mesh(mesh_));
-        result_.surface_area_mm2 = surface.total_area();
+        const geometry::TriangleMesh surface = geometry::to_triangle_mesh(mesh_);
+        result_.surface_area_mm2 = geometry::surface_area(surface);
         result_.woven_area_mm2 = woven_area(result_.foliation);
-        result_.quality = geometry::measure_quality(result_.quads, surface, context);
+        result_.quality =
+            geometry::measure_quality(result_.quads, geometry::ClosestPoint(surface), context);
+        result_.two_sided =
+            geometry::measure_two_sided(result_.quads, result_.quality.cells, surface, context);
         int stride = 1;
         while (result_.quads.quads.size() / static_cast<std::size_t>(stride) > kMostLeafCells) {
             stride *= 2;
@@ -281,6 +297,7 @@ private:
         result_.warnings = joined_warnings(warnings_);
         files.push_back({"surface.ply", surface_ply(result_)});
         files.push_back({"quads.obj", quads_obj(result_)});
+        files.push_back({"quality.json", quality_json(result_)});
         files.push_back({"leaves.json", leaves_json(result_)});
         files.push_back({"strips.json", strips_json(result_)});
         files.push_back({"weave.json", weave_json(result_)});

@@ -205,28 +205,6 @@ FoliationMode natural_mode(const SurfacePart& part) {
     return part.loops.empty() ? FoliationMode::Torus : FoliationMode::Annulus;
 }
 
-const char* name_of(FoliationMode mode) {
-    switch (mode) {
-        case FoliationMode::Auto:
-            return "auto";
-        case FoliationMode::Pants:
-            return "pants";
-        case FoliationMode::OneForm:
-            return "one-form";
-        case FoliationMode::Disk:
-            return "disk";
-        case FoliationMode::Annulus:
-            return "annulus";
-        case FoliationMode::Torus:
-            return "torus";
-        case FoliationMode::SpherePolar:
-            return "sphere-polar";
-        case FoliationMode::SpherePillowcase:
-            return "sphere-pillowcase";
-    }
-    return "";
-}
-
 std::string describe(const SurfacePart& part) {
     switch (natural_mode(part)) {
         case FoliationMode::SpherePillowcase:

@@ -11,6 +11,7 @@
 
 #include "geometry/context.h"
 #include "geometry/foliation.h"
+#include "geometry/foliation_names.h"
 #include "geometry/punctures.h"
 #include "geometry/topology.h"
 
@@ -46,9 +47,6 @@ SurfacePart coarse_part(const SurfacePart& part, std::size_t most, const Context
 
 // The mode that a surface of this topology asks for.
 FoliationMode natural_mode(const SurfacePart& part);
-
-// As job parameters have it: "sphere-pillowcase".
-const char* name_of(FoliationMode mode);
 
 // "a disk", "a surface of genus 2 with 1 boundary loop".
 std::string describe(const SurfacePart& part);

@@ -1,12 +1,12 @@
 #include <array>
 #include <iterator>
 #include <string>
-#include <string_view>
 
 #include <fmt/format.h>
 
 #include "fab/export/formats.h"
 #include "fab/export/number.h"
+#include "fab/markup.h"
 
 namespace leafcutter::fab {
 
@@ -21,29 +21,6 @@ struct Layer {
 constexpr std::array<Layer, 3> kLayers{{{Operation::Engrave, "engrave", "#000000"},
                                         {Operation::Score, "score", "#0000ff"},
                                         {Operation::Cut, "cut", "#ff0000"}}};
-
-std::string escaped(std::string_view text) {
-    std::string out;
-    for (const char letter : text) {
-        switch (letter) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += static_cast<unsigned char>(letter) < ' ' ? ' ' : letter;
-        }
-    }
-    return out;
-}
 
 // Sheets have y up, SVG has y down.
 void add_path(const CutPath& path, double height_mm, std::string& out) {

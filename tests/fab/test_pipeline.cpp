@@ -81,12 +81,12 @@ TEST(Weave, WritesEveryFileOfThePackage) {
         EXPECT_FALSE(file.bytes.empty()) << file.path;
     }
     for (const char* name :
-         {"report.json", "surface.ply", "quads.obj", "leaves.json", "strips.json", "weave.json",
-          "layout.json", "guide.html", "sheets/sheet-001.svg", "sheets/sheet-001.dxf",
+         {"report.json", "surface.ply", "quads.obj", "quality.json", "leaves.json", "strips.json",
+          "weave.json", "layout.json", "guide.html", "sheets/sheet-001.svg", "sheets/sheet-001.dxf",
           "sheets/sheet-001.gcode"}) {
         EXPECT_THAT(names, Contains(name));
     }
-    EXPECT_EQ(names.size(), 8U + 3U * static_cast<std::size_t>(made.sheets));
+    EXPECT_EQ(names.size(), 9U + 3U * static_cast<std::size_t>(made.sheets));
     EXPECT_EQ(made.strips, made.pieces);
     EXPECT_GT(made.quads, 40);
     EXPECT_GT(made.estimated_s, 0.0);

@@ -239,6 +239,7 @@ export const en = {
       'surface.ply': 'Surface',
       'quads.obj': 'Quad mesh',
       'leaves.json': 'Leaves',
+      'quality.json': 'Quality of every quad',
       'strips.json': 'Strips',
       'weave.json': 'Weave',
       'layout.json': 'Layout',
