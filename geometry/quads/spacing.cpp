@@ -29,6 +29,7 @@ struct Band {
     double from = 0.0;
     double to = 0.0;
     double density = 0.0;
+    double leaf_mm = 0.0;  // Mean length of a leaf inside.
 };
 
 double area_on_surface(const TriangleMesh& mesh, std::size_t triangle) {
@@ -37,6 +38,18 @@ double area_on_surface(const TriangleMesh& mesh, std::size_t triangle) {
     const Vector3d& b = mesh.positions[static_cast<std::size_t>(corners[1])];
     const Vector3d& c = mesh.positions[static_cast<std::size_t>(corners[2])];
     return 0.5 * (b - a).cross(c - a).norm();
+}
+
+// The integral of a linear function's gradient over a triangle: by the coarea formula that of the
+// lengths of its level lines.
+double gradient_integral(const TriangleMesh& mesh,
+                         std::size_t triangle,
+                         const std::array<double, 3>& values) {
+    const auto& corners = mesh.triangles[triangle];
+    const Vector3d& a = mesh.positions[static_cast<std::size_t>(corners[0])];
+    const Vector3d& b = mesh.positions[static_cast<std::size_t>(corners[1])];
+    const Vector3d& c = mesh.positions[static_cast<std::size_t>(corners[2])];
+    return 0.5 * (values[0] * (c - b) + values[1] * (a - c) + values[2] * (b - a)).norm();
 }
 
 double area_in_chart(const std::array<Vector2d, 3>& gf) {
@@ -48,16 +61,17 @@ double area_in_chart(const std::array<Vector2d, 3>& gf) {
 // Where the level axis is a circle, bands are cut at its ends.
 void add_band(const Band& band, double length, bool closed, std::vector<Band>& bands) {
     if (!closed) {
-        bands.push_back(
-            {std::clamp(band.from, 0.0, length), std::clamp(band.to, 0.0, length), band.density});
+        bands.push_back(band);
+        bands.back().from = std::clamp(band.from, 0.0, length);
+        bands.back().to = std::clamp(band.to, 0.0, length);
         return;
     }
     const double turn = std::floor(band.from / length) * length;
     const double from = band.from - turn;
     const double to = band.to - turn;
-    bands.push_back({from, std::min(to, length), band.density});
+    bands.push_back({from, std::min(to, length), band.density, band.leaf_mm});
     if (to > length) {
-        bands.push_back({0.0, std::min(to - length, length), band.density});
+        bands.push_back({0.0, std::min(to - length, length), band.density, band.leaf_mm});
     }
 }
 
@@ -73,14 +87,21 @@ std::vector<Band> bands_of(const Cylinder& chart, Axis axis, double slant) {
         const auto level = [&](const Vector2d& place) {
             return along ? place.y() : place.x() - slant * place.y();
         };
-        const auto [from, to] = std::minmax({level(gf[0]), level(gf[1]), level(gf[2])});
+        const std::array<double, 3> values{level(gf[0]), level(gf[1]), level(gf[2])};
+        const auto [low, high] = std::minmax_element(values.begin(), values.end());
+        const double from = *low;
+        const double to = *high;
         const double in_chart = area_in_chart(gf);
         if (!(to > from) || !(in_chart > 0.0)) {
             continue;
         }
         const double factor = std::sqrt(area_on_surface(chart.mesh, t) / in_chart);
         const double share = in_chart / ((to - from) * across);
-        add_band({from, to, share * std::pow(factor, kOrder)}, length, closed, bands);
+        add_band({.from = from,
+                  .to = to,
+                  .density = share * std::pow(factor, kOrder),
+                  .leaf_mm = gradient_integral(chart.mesh, t, values) / (to - from)},
+                 length, closed, bands);
     }
     return bands;
 }
@@ -131,6 +152,14 @@ LevelScale::LevelScale(const Cylinder& chart, Axis axis, double slant)
     for (std::size_t i = 0; i < density.size(); ++i) {
         cumulated_.push_back(cumulated_.back() +
                              std::pow(density[i], 1.0 / kOrder) * (places_[i + 1] - places_[i]));
+    }
+    const auto width_below = [this](double place) {
+        const auto at = std::lower_bound(places_.begin(), places_.end(), place) - places_.begin();
+        return cumulated_[static_cast<std::size_t>(at)];
+    };
+    for (const Band& band : bands) {
+        mean_even_leaf_ += band.leaf_mm * (band.to - band.from) / length_;
+        mean_leaf_ += band.leaf_mm * (width_below(band.to) - width_below(band.from)) / total_mm();
     }
 }
 
