@@ -28,14 +28,12 @@ public:
         options.torus_rings = params_.torus_rings;
         options.corners = vertices(params_.corners, "corners");
         options.pants = params_.pants;
-        options.loops = loops();
+        options.loops = loops(params_.loops, "loops");
+        options.forbidden_loops = loops(params_.forbid, "forbid");
         options.function = params_.function;
         options.weights = params_.weights;
         options.poles = vertices(params_.poles, "poles");
-        for (std::size_t i = 0; i < params_.near.size(); ++i) {
-            options.near.push_back(
-                vertex(params_.near[i], fmt::format("foliation.singularities[{}].near", i)));
-        }
+        options.near = places();
         options.sources = boundaries(params_.sources, "sources");
         options.sinks = boundaries(params_.sinks, "sinks");
         options.puncture = params_.puncture;
@@ -76,16 +74,46 @@ private:
         return result;
     }
 
-    std::vector<std::vector<int>> loops() const {
+    std::vector<std::vector<int>> loops(const std::vector<std::vector<int>>& of_input,
+                                        const char* key) const {
         std::vector<std::vector<int>> result;
-        for (std::size_t i = 0; i < params_.loops.size(); ++i) {
+        for (std::size_t i = 0; i < of_input.size(); ++i) {
             std::vector<int>& loop = result.emplace_back();
-            for (std::size_t j = 0; j < params_.loops[i].size(); ++j) {
+            for (std::size_t j = 0; j < of_input[i].size(); ++j) {
                 loop.push_back(
-                    vertex(params_.loops[i][j], fmt::format("foliation.loops[{}][{}]", i, j)));
+                    vertex(of_input[i][j], fmt::format("foliation.{}[{}][{}]", key, i, j)));
             }
         }
         return result;
+    }
+
+    std::vector<int> places() const {
+        std::vector<int> result;
+        for (std::size_t i = 0; i < params_.near.size(); ++i) {
+            const std::string path = fmt::format("foliation.singularities[{}].near", i);
+            const PlaceParams& place = params_.near[i];
+            const int found =
+                place.vertex ? vertex(*place.vertex, path) : nearest_to(place.position);
+            const auto same = std::find(result.begin(), result.end(), found);
+            if (same != result.end()) {
+                refuse("same-place", fmt::format("{}: the same vertex of the model as singularities"
+                                                 "[{}]",
+                                                 path, same - result.begin()));
+            }
+            result.push_back(found);
+        }
+        return result;
+    }
+
+    int nearest_to(const std::array<double, 3>& position) const {
+        const Eigen::Vector3d place =
+            mesh_.scale * Eigen::Vector3d(position[0], position[1], position[2]);
+        const auto nearest = std::min_element(
+            mesh_.mesh->vertices_begin(), mesh_.mesh->vertices_end(), [&](auto a, auto b) {
+                return (mesh_.mesh->point(a) - place).squaredNorm() <
+                       (mesh_.mesh->point(b) - place).squaredNorm();
+            });
+        return nearest->idx();
     }
 
     std::vector<geometry::LoopName> boundaries(const std::vector<LoopParams>& named,

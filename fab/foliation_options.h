@@ -9,6 +9,7 @@
 
 #include "fab/job_params.h"
 #include "geometry/foliation.h"
+#include "geometry/mesh.h"
 #include "geometry/topology.h"
 
 namespace leafcutter::fab {
@@ -17,9 +18,12 @@ namespace leafcutter::fab {
 struct NamedMesh {
     std::span<const int> vertex_of_input;  // Per vertex of the file: vertex of the mesh, or -1.
     const geometry::Topology& topology;
+    const geometry::Mesh* mesh = nullptr;  // Borrowed; needed for places given by a position.
+    double scale = 1.0;                    // Of the mesh to the file.
 };
 
-// Throws geometry::Error(BadOption, "no-such-vertex" or "no-such-loop"), naming the parameter.
+// Throws geometry::Error(BadOption, "no-such-vertex", "no-such-loop" or "same-place"), naming the
+// parameter.
 geometry::FoliationOptions foliation_options(const FoliationParams& params, const NamedMesh& mesh);
 
 // The other way: per vertex of the mesh its first number in the file, or -1 where it has none.

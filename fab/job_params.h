@@ -30,6 +30,12 @@ struct LoopParams {
     std::vector<int> vertices;
 };
 
+// A place on the surface: a vertex, or the one nearest to a position in units of the input file.
+struct PlaceParams {
+    std::optional<int> vertex;
+    std::array<double, 3> position{};  // Without `vertex`.
+};
+
 // The foliation section as written: vertex numbers are those of the input file.
 struct FoliationParams {
     geometry::FoliationMode mode = geometry::FoliationMode::Auto;
@@ -37,12 +43,13 @@ struct FoliationParams {
     std::optional<std::array<int, 4>> corners;
 
     geometry::PantsSource pants = geometry::PantsSource::Reeb;
-    std::vector<std::vector<int>> loops;  // PantsSource::User only.
+    std::vector<std::vector<int>> loops;   // PantsSource::User only.
+    std::vector<std::vector<int>> forbid;  // Ways round the surface that no cylinder may go.
     geometry::SweepFunction function = geometry::SweepFunction::Auto;
     std::optional<std::vector<double>> weights;  // Of the graph's edges; else automatic.
 
     std::optional<std::array<int, 2>> poles;
-    std::vector<int> near;  // Vertices near the four singular points of a pillowcase, or none.
+    std::vector<PlaceParams> near;  // Where singular points are wanted.
     std::vector<LoopParams> sources;
     std::vector<LoopParams> sinks;
 

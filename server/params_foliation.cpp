@@ -53,13 +53,13 @@ void read_vertices(ObjectReader& reader,
     std::copy(vertices.begin(), vertices.end(), target->begin());
 }
 
-void read_loops(ObjectReader& reader, FoliationParams& foliation) {
+void read_loops(ObjectReader& reader, std::string_view key, std::vector<std::vector<int>>& loops) {
     constexpr std::size_t kFewest = 3;
-    const json* value = reader.get("loops");
+    const json* value = reader.get(key);
     if (value == nullptr) {
         return;
     }
-    const std::string path = reader.path_of("loops");
+    const std::string path = reader.path_of(key);
     const json& list = list_at(*value, path, "a list of loops, each a list of vertices");
     for (std::size_t i = 0; i < list.size(); ++i) {
         const std::string loop_path = fmt::format("{}[{}]", path, i);
@@ -67,7 +67,7 @@ void read_loops(ObjectReader& reader, FoliationParams& foliation) {
         if (loop.size() < kFewest || !all_different(loop)) {
             refuse_param(loop_path, "must be three or more different vertices, in their order");
         }
-        foliation.loops.push_back(std::move(loop));
+        loops.push_back(std::move(loop));
     }
 }
 
@@ -154,24 +154,45 @@ void read_punctures(ObjectReader& reader, FoliationParams& foliation) {
     foliation.puncture = list.empty() ? PunctureChoice::None : PunctureChoice::Given;
 }
 
+fab::PlaceParams read_place(const json& value, const std::string& path) {
+    fab::PlaceParams place;
+    if (!value.is_array()) {
+        if (!value.is_number_integer()) {
+            refuse_param(path, "must be a vertex, or a position [x, y, z] in units of the file");
+        }
+        place.vertex = read_integer(value, path, {});
+        return place;
+    }
+    constexpr Range kAnywhere{-1e12, 1e12};
+    if (value.size() != place.position.size()) {
+        refuse_param(path, "must be a vertex, or a position [x, y, z] in units of the file");
+    }
+    for (std::size_t i = 0; i < place.position.size(); ++i) {
+        place.position[i] = read_number(value[i], fmt::format("{}[{}]", path, i), kAnywhere);
+    }
+    return place;
+}
+
 void read_singularities(ObjectReader& reader, FoliationParams& foliation) {
-    constexpr std::size_t kOfAPillowcase = 4;
     const json* value = reader.get("singularities");
     if (value == nullptr) {
         return;
     }
     const std::string path = reader.path_of("singularities");
     const json& list = list_at(*value, path, "a list of {\"near\": vertex}");
+    std::set<int> vertices;
     for (std::size_t i = 0; i < list.size(); ++i) {
         ObjectReader singularity(list[i], fmt::format("{}[{}]", path, i));
-        if (singularity.get("near") == nullptr) {
+        const json* near = singularity.get("near");
+        if (near == nullptr) {
             refuse_param(singularity.path_of("near"), "must be given");
         }
-        singularity.integer("near", foliation.near.emplace_back(), {});
+        const fab::PlaceParams place = read_place(*near, singularity.path_of("near"));
+        if (place.vertex && !vertices.insert(*place.vertex).second) {
+            refuse_param(singularity.path_of("near"), "is wanted twice");
+        }
+        foliation.near.push_back(place);
         singularity.finish();
-    }
-    if (!list.empty() && (list.size() != kOfAPillowcase || !all_different(foliation.near))) {
-        refuse_param(path, "must be near four different vertices: a pillowcase has four corners");
     }
 }
 
@@ -211,6 +232,9 @@ void check_pants(const ObjectReader& reader, const FoliationParams& foliation) {
     }
     if (foliation.weights) {
         check_mode(reader, "weights", foliation.mode, users);
+    }
+    if (!foliation.forbid.empty()) {
+        check_mode(reader, "forbid", foliation.mode, users);
     }
 }
 
@@ -256,7 +280,13 @@ void check_together(const ObjectReader& reader, const FoliationParams& foliation
         check_mode(reader, "poles", mode, {FoliationMode::SpherePolar});
     }
     if (!foliation.near.empty()) {
-        check_mode(reader, "singularities", mode, {FoliationMode::SpherePillowcase});
+        check_mode(reader, "singularities", mode,
+                   {FoliationMode::Auto, FoliationMode::Pants, FoliationMode::OneForm,
+                    FoliationMode::SpherePolar, FoliationMode::SpherePillowcase});
+        if (foliation.poles) {
+            refuse_param(reader.path_of("singularities"),
+                         "not together with foliation.poles, which places them");
+        }
     }
     check_sources_and_sinks(reader, foliation);
     check_holes(reader, foliation);
@@ -269,7 +299,8 @@ void read_foliation(ObjectReader& reader, FoliationParams& foliation) {
     read_choice(reader, "torus_rings", foliation.torus_rings, kTorusRings);
     read_vertices(reader, "corners", foliation.corners, "four");
     read_choice(reader, "pants", foliation.pants, kPantsSources);
-    read_loops(reader, foliation);
+    read_loops(reader, "loops", foliation.loops);
+    read_loops(reader, "forbid", foliation.forbid);
     read_choice(reader, "function", foliation.function, kSweepFunctions);
     read_weights(reader, foliation);
     read_vertices(reader, "poles", foliation.poles, "two");

@@ -63,6 +63,7 @@ json foliation_to_json(const fab::FoliationParams& foliation) {
                    {"torus_rings", name_of(kTorusRings, foliation.torus_rings)},
                    {"pants", name_of(kPantsSources, foliation.pants)},
                    {"loops", foliation.loops},
+                   {"forbid", foliation.forbid},
                    {"function", name_of(kSweepFunctions, foliation.function)},
                    {"sources", loops_to_json(foliation.sources)},
                    {"sinks", loops_to_json(foliation.sinks)},
@@ -70,8 +71,9 @@ json foliation_to_json(const fab::FoliationParams& foliation) {
                    {"singularities", json::array()},
                    {"components", name_of(kComponents, foliation.components)}};
     result["weights"] = foliation.weights ? json(*foliation.weights) : json("auto");
-    for (const int vertex : foliation.near) {
-        result["singularities"].push_back({{"near", vertex}});
+    for (const fab::PlaceParams& place : foliation.near) {
+        result["singularities"].push_back(
+            {{"near", place.vertex ? json(*place.vertex) : json(place.position)}});
     }
     if (foliation.corners) {
         result["corners"] = *foliation.corners;
