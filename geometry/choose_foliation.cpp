@@ -57,11 +57,11 @@ FoliationMode wished_mode(const SurfacePart& part, const FoliationOptions& optio
     if (!options.sources.empty() || !options.sinks.empty()) {
         return FoliationMode::OneForm;
     }
-    if (part.euler == 2 && !options.near.empty()) {
-        return FoliationMode::SpherePillowcase;
-    }
     if (part.euler == 2 && options.poles) {
         return FoliationMode::SpherePolar;
+    }
+    if (part.euler == 2 && !options.near.empty()) {
+        return FoliationMode::SpherePillowcase;
     }
     const bool is_fixed = options.puncture != PunctureChoice::Auto || options.weights ||
                           options.pants == PantsSource::User || !options.near.empty() ||

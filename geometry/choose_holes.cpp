@@ -92,6 +92,8 @@ std::optional<Trial> HoleSearch::attempt(std::size_t holes,
         if (!is_final) {  // What is done for the grid costs time and hardly moves the spread.
             options.junctions.reset();
             options.even_cells = false;
+            options.near.clear();  // The coarse surface need not have these vertices.
+            options.forbidden_loops.clear();
         }
         Foliation foliation = foliate_part(opened, trial.mode, options, quiet);
         trial.spread = foliation.spread;

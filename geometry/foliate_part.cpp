@@ -14,6 +14,7 @@
 
 #include "geometry/cases/annulus.h"
 #include "geometry/cases/disk.h"
+#include "geometry/cases/flow_search.h"
 #include "geometry/cases/one_form.h"
 #include "geometry/cases/pants.h"
 #include "geometry/cases/sphere.h"
@@ -150,6 +151,13 @@ Foliation one_form(const SurfacePart& part,
                    const Context& context) {
     std::vector<int> sources = find_loops(part, options.sources);
     std::vector<int> sinks = find_loops(part, options.sinks);
+    const bool is_free = sources.empty() || sinks.empty();
+    if (is_free && !options.near.empty() && part.loops.size() > 2) {
+        FlowEnds ends =
+            nearest_flow(part.mesh, part.loops, {sources, sinks}, options.near, context);
+        sources = std::move(ends.sources);
+        sinks = std::move(ends.sinks);
+    }
     if (sources.empty()) {
         const std::vector<int> free = all_but(part, sinks);
         const auto longest = std::max_element(free.begin(), free.end(), [&](int a, int b) {

@@ -14,6 +14,7 @@
 #include "geometry/laplacian.h"
 #include "geometry/pants/coarse_maps.h"
 #include "geometry/pants/even_maps.h"
+#include "geometry/pants/forbidden_loops.h"
 #include "geometry/pants/hierarchy.h"
 #include "geometry/pants/near_points.h"
 #include "geometry/pants/prepare_surface.h"
@@ -261,19 +262,23 @@ bool is_evened(const FoliationOptions& options) {
     return options.even_cells && !options.weights && options.near.empty();
 }
 
-// The first candidate of this hierarchy that passes all checks. What others failed with goes into
-// `failures`.
+// Why there is no foliation yet.
+struct Failures {
+    std::vector<std::string> reasons;
+    bool all_forbidden = false;  // Some decompositions were left out, and no others found.
+};
+
+// The first candidate of this hierarchy that passes all checks.
 std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
-                                        int attempt,
+                                        const CoarseOptions& coarse,
                                         const FoliationOptions& options,
                                         const Context& context,
-                                        std::vector<std::string>& failures) {
+                                        Failures& failures) {
     const double cells = options.junctions ? options.junctions->cells : kUsualCells;
     double variation = 0.0;  // Before weights are changed for it.
     std::vector<CoarseMap> maps;
     try {
-        maps = solve_coarsest(hierarchy,
-                              {options.pants, options.function, options.weights, attempt}, context);
+        maps = solve_coarsest(hierarchy, coarse, context);
         if (is_evened(options)) {
             variation = forecast_grid(hierarchy.levels.back(), maps.front().map, cells).variation;
             maps = even_maps(hierarchy, std::move(maps), cells, context);
@@ -286,7 +291,8 @@ std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
         if (error.kind() != ErrorKind::SelfCheck) {
             throw;
         }
-        failures.emplace_back(error.what());
+        failures.reasons.emplace_back(error.what());
+        failures.all_forbidden = failures.all_forbidden || error.code() == "none-allowed";
     }
     context.report("foliation", 0.3);
     for (std::size_t i = 0; i < std::min(maps.size(), kMostCandidates); ++i) {
@@ -307,7 +313,44 @@ std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
             if (error.kind() != ErrorKind::SelfCheck) {
                 throw;
             }
-            failures.push_back(fmt::format("{}: {}", maps[i].name, error.what()));
+            failures.reasons.push_back(fmt::format("{}: {}", maps[i].name, error.what()));
+        }
+    }
+    return std::nullopt;
+}
+
+// What to try, one after the other. Where ways are forbidden, other sources may know another one.
+std::vector<CoarseOptions> attempts_of(const FoliationOptions& options) {
+    std::vector<CoarseOptions> attempts;
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+        attempts.push_back({options.pants, options.function, options.weights, attempt});
+    }
+    if (!options.forbidden_loops.empty() && options.pants == PantsSource::Reeb) {
+        for (const PantsSource source : {PantsSource::HandleLoops, PantsSource::TunnelLoops}) {
+            attempts.push_back({source, options.function, options.weights});
+        }
+    }
+    return attempts;
+}
+
+std::optional<Foliation> try_attempts(const Hierarchy& hierarchy,
+                                      const FoliationOptions& options,
+                                      const Context& context,
+                                      Failures& failures) {
+    std::optional<ForbiddenLoops> forbidden;
+    if (!options.forbidden_loops.empty()) {
+        const bool has_loops = options.pants == PantsSource::User;
+        forbidden.emplace(hierarchy, options.forbidden_loops,
+                          has_loops ? options.loops : std::vector<std::vector<int>>{}, context);
+    }
+    for (CoarseOptions& attempt : attempts_of(options)) {
+        if (forbidden) {
+            attempt.is_allowed = [&](const GraphMap& map) { return forbidden->allow(map); };
+        }
+        std::optional<Foliation> foliation =
+            try_candidates(hierarchy, attempt, options, context, failures);
+        if (foliation) {
+            return foliation;
         }
     }
     return std::nullopt;
@@ -324,17 +367,13 @@ Foliation foliate_pants(const TriangleMesh& mesh,
         prepare_surface(mesh, loops, options.pants == PantsSource::User ? options.loops : no_cuts,
                         options.refinement, context);
     context.report("foliation", 0.05);
-    std::vector<std::string> failures;
+    Failures failures;
     for (const std::size_t coarsest : {kCoarsest, kFinerCoarsest}) {
         const Hierarchy hierarchy =
             build_hierarchy(prepared.surface, prepared.boundary_lines, coarsest, context);
         context.report("foliation", 0.15);
-        for (int attempt = 0; attempt < kAttempts; ++attempt) {
-            std::optional<Foliation> foliation =
-                try_candidates(hierarchy, attempt, options, context, failures);
-            if (!foliation) {
-                continue;
-            }
+        std::optional<Foliation> foliation = try_attempts(hierarchy, options, context, failures);
+        if (foliation) {
             for (Cylinder& cylinder : foliation->cylinders) {
                 for (int& source : cylinder.source_vertex) {
                     source = source >= 0 && at(source) < mesh.positions.size() ? source : -1;
@@ -342,11 +381,17 @@ Foliation foliate_pants(const TriangleMesh& mesh,
             }
             return std::move(*foliation);
         }
+        if (failures.all_forbidden) {
+            throw Error(ErrorKind::BadOption, "all-forbidden",
+                        "foliation.forbid: every pants decomposition found goes one of these ways; "
+                        "forbid fewer, or give ways to take instead (foliation.pants \"user\" and "
+                        "foliation.loops)");
+        }
     }
     fail("no-sound-decomposition",
          fmt::format("harmonic map: no pants decomposition gave sound cylinders ({}); repair or "
                      "refine the mesh",
-                     fmt::join(failures, "; ")));
+                     fmt::join(failures.reasons, "; ")));
 }
 
 }  // namespace leafcutter::geometry

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "geometry/cases/finish.h"
 #include "geometry/cases/sphere.h"
 #include "geometry/cases/sphere_cover.h"
@@ -148,21 +150,26 @@ void check_points(const TriangleMesh& mesh, const std::vector<int>& near) {
     };
     std::vector<int> sorted = near;
     std::sort(sorted.begin(), sorted.end());
-    if (near.size() != 4 || !std::all_of(near.begin(), near.end(), is_vertex) ||
+    if (near.size() > 4) {
+        throw Error(ErrorKind::BadOption, "too-many-near",
+                    fmt::format("foliation.singularities: {} wanted, but a pillowcase has four "
+                                "corners",
+                                near.size()));
+    }
+    if (!std::all_of(near.begin(), near.end(), is_vertex) ||
         std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
-        throw Error(ErrorKind::BadOption, "near-not-four",
-                    "foliation.near: must be four different vertices of the model, or empty, so "
-                    "that they are searched for");
+        throw Error(ErrorKind::BadOption, "bad-near",
+                    "foliation.singularities: must be near different vertices of the model");
     }
 }
 
 Points singular_points(const TriangleMesh& mesh,
                        const FoliationOptions& options,
                        const Context& context) {
-    if (options.near.empty()) {
-        return choose_pillow_points(mesh, context);
-    }
     check_points(mesh, options.near);
+    if (options.near.size() < 4) {
+        return choose_pillow_points(mesh, options.near, context);
+    }
     return {options.near[0], options.near[1], options.near[2], options.near[3]};
 }
 

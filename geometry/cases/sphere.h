@@ -19,16 +19,19 @@ namespace leafcutter::geometry {
 
 // `mesh` is connected, closed and of genus 0. One cylinder, ChartShape::Pillowcase, slit open along
 // the two arcs between singular points; `critical_graph` has these arcs. Singular points are the
-// vertices options.near, or, if that is empty, those of all tried (tips of limbs and points far
+// vertices options.near, filled up to four with those of all tried (tips of limbs and points far
 // from one another) that give the most even cells. Rings are the shorter of the closed leaves.
-// Throws Error(BadOption, "near-not-four") unless `near` is empty or four different vertices.
+// Throws Error(BadOption), "bad-near" unless the vertices of `near` exist and differ, "too-many-near"
+// if there are more than four.
 Foliation foliate_pillowcase(const TriangleMesh& mesh,
                              const FoliationOptions& options,
                              const Context& context);
 
-// `mesh` is connected, closed and of genus 0. A ring between two small holes, at options.poles or
-// at the two ends of the surface. `punctures` has the holes.
-// Throws Error(BadOption, "bad-poles") unless poles are two different vertices.
+// `mesh` is connected, closed and of genus 0. A ring between two small holes, at options.poles, at
+// options.near (one vertex, and what is opposite, or two) or at the two ends of the surface.
+// `punctures` has the holes.
+// Throws Error(BadOption), "bad-poles" unless poles are two different vertices, given once,
+// "too-many-near" for more than two.
 Foliation foliate_sphere_polar(const TriangleMesh& mesh,
                                const FoliationOptions& options,
                                const Context& context);

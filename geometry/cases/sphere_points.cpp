@@ -93,10 +93,14 @@ CellSpread spread_for(const TrialSurface& surface, const std::array<int, 4>& poi
     return cell_spread(parts);
 }
 
-std::vector<int> candidates(const TriangleMesh& mesh, const Context& context) {
-    std::vector<int> out;
+// First `wanted`, then tips of limbs, then what is far from all of them.
+std::vector<int> candidates(const TriangleMesh& mesh,
+                            const std::vector<int>& wanted,
+                            const Context& context) {
+    std::vector<int> out = wanted;
     for (const LimbTip& tip : find_limb_tips(mesh, {}, context)) {
-        if (out.size() < kCandidates) {
+        if (out.size() < kCandidates &&
+            std::find(out.begin(), out.end(), tip.vertex) == out.end()) {
             out.push_back(tip.vertex);
         }
     }
@@ -106,14 +110,18 @@ std::vector<int> candidates(const TriangleMesh& mesh, const Context& context) {
     return out;
 }
 
-std::vector<std::array<int, 4>> subsets(const std::vector<int>& of) {
+// All choices of four that begin with the first `kept`.
+std::vector<std::array<int, 4>> subsets(const std::vector<int>& of, std::size_t kept) {
     std::vector<std::array<int, 4>> out;
     const std::size_t n = of.size();
     for (std::size_t a = 0; a < n; ++a) {
         for (std::size_t b = a + 1; b < n; ++b) {
             for (std::size_t c = b + 1; c < n; ++c) {
                 for (std::size_t d = c + 1; d < n; ++d) {
-                    out.push_back({of[a], of[b], of[c], of[d]});
+                    const std::array<std::size_t, 4> places{a, b, c, d};
+                    if (kept == 0 || places[kept - 1] == kept - 1) {
+                        out.push_back({of[a], of[b], of[c], of[d]});
+                    }
                 }
             }
         }
@@ -121,12 +129,42 @@ std::vector<std::array<int, 4>> subsets(const std::vector<int>& of) {
     return out;
 }
 
+// The vertices of a coarse version that come nearest, no two alike.
+std::vector<int> nearest_vertices(const CoarseVersion& coarse,
+                                  const TriangleMesh& mesh,
+                                  std::span<const int> wanted) {
+    std::vector<int> out;
+    for (const int vertex : wanted) {
+        int nearest = -1;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t v = 0; v < coarse.mesh.positions.size(); ++v) {
+            const double square =
+                (coarse.mesh.positions[v] - mesh.positions[at(vertex)]).squaredNorm();
+            const bool is_free =
+                std::find(out.begin(), out.end(), static_cast<int>(v)) == out.end();
+            if (is_free && square < least) {
+                least = square;
+                nearest = static_cast<int>(v);
+            }
+        }
+        out.push_back(nearest);
+    }
+    return out;
+}
+
 }  // namespace
 
-std::array<int, 4> choose_pillow_points(const TriangleMesh& mesh, const Context& context) {
+std::array<int, 4> choose_pillow_points(const TriangleMesh& mesh,
+                                        std::span<const int> wanted,
+                                        const Context& context) {
     const CoarseVersion coarse = coarse_version(mesh, kCoarseVertices, context);
+    if (coarse.mesh.positions.size() < 4) {
+        throw Error(ErrorKind::BadMesh, "too-few-vertices",
+                    "a pillowcase needs four vertices; refine the model");
+    }
     const TrialSurface surface = trial_surface(coarse.mesh);
-    const std::vector<std::array<int, 4>> choices = subsets(candidates(coarse.mesh, context));
+    const std::vector<std::array<int, 4>> choices = subsets(
+        candidates(coarse.mesh, nearest_vertices(coarse, mesh, wanted), context), wanted.size());
     std::vector<double> variation(choices.size(), std::numeric_limits<double>::infinity());
     for_each_task(choices.size(), context, [&](std::size_t i, const Context& /*own*/) {
         try {
@@ -144,6 +182,7 @@ std::array<int, 4> choose_pillow_points(const TriangleMesh& mesh, const Context&
     for (int& point : points) {
         point = coarse.source_vertex[at(point)];
     }
+    std::copy(wanted.begin(), wanted.end(), points.begin());
     return points;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "geometry/context.h"
 #include "geometry/foliation.h"
@@ -13,7 +14,10 @@
 namespace leafcutter::geometry {
 
 // Vertices of `mesh`, closed and of genus 0, that give the most even cells of all tried: tips of
-// limbs and points far from one another, on a coarse version of the surface. Deterministic.
-std::array<int, 4> choose_pillow_points(const TriangleMesh& mesh, const Context& context);
+// limbs and points far from one another, on a coarse version of the surface. Deterministic. The
+// first are `wanted`, at most four different vertices.
+std::array<int, 4> choose_pillow_points(const TriangleMesh& mesh,
+                                        std::span<const int> wanted,
+                                        const Context& context);
 
 }  // namespace leafcutter::geometry

@@ -2,6 +2,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "geometry/cases/annulus.h"
 #include "geometry/cases/sphere.h"
 #include "geometry/cell_spread.h"
@@ -44,16 +46,38 @@ Poles farthest_pair(const TriangleMesh& mesh, const Context& context) {
     return {coarse.source_vertex[at(ends[0])], coarse.source_vertex[at(ends[1])]};
 }
 
+int farthest_from(int pole, const TriangleMesh& mesh, const Context& context) {
+    context.check();
+    return SurfaceDistance(mesh).from(std::array{pole}).back().vertex;
+}
+
+// Poles are where singular points are wanted; a second one is opposite the first.
+Poles near_places(const TriangleMesh& mesh, const std::vector<int>& near, const Context& context) {
+    if (near.size() > 2) {
+        throw Error(ErrorKind::BadOption, "too-many-near",
+                    fmt::format("foliation.singularities: {} wanted, but this foliation has two "
+                                "poles",
+                                near.size()));
+    }
+    return {near.front(), near.size() == 2 ? near[1] : farthest_from(near[0], mesh, context)};
+}
+
 Poles poles_of(const TriangleMesh& mesh, const FoliationOptions& options, const Context& context) {
-    if (!options.poles) {
+    if (options.poles && !options.near.empty()) {
+        throw Error(ErrorKind::BadOption, "bad-poles",
+                    "foliation.singularities: foliation.poles says where they are; give one or "
+                    "the other");
+    }
+    if (!options.poles && options.near.empty()) {
         return farthest_pair(mesh, context);
     }
-    const Poles poles = *options.poles;
+    const Poles poles = options.poles ? *options.poles : near_places(mesh, options.near, context);
     const int count = static_cast<int>(mesh.positions.size());
     if (std::min(poles[0], poles[1]) < 0 || std::max(poles[0], poles[1]) >= count ||
         poles[0] == poles[1]) {
         throw Error(ErrorKind::BadOption, "bad-poles",
-                    "foliation.poles: must be two different vertices of the model");
+                    fmt::format("foliation.{}: must be two different vertices of the model",
+                                options.poles ? "poles" : "singularities"));
     }
     return poles;
 }

@@ -341,6 +341,19 @@ std::vector<CoarseMap> with_weights(const Hierarchy::Level& level,
     return automatic;
 }
 
+void keep_allowed(std::vector<CoarseMap>& maps, const CoarseOptions& options) {
+    if (!options.is_allowed) {
+        return;
+    }
+    maps.erase(std::remove_if(maps.begin(), maps.end(),
+                              [&](const CoarseMap& map) { return !options.is_allowed(map.map); }),
+               maps.end());
+    if (maps.empty()) {
+        throw Error(ErrorKind::SelfCheck, "none-allowed",
+                    "every decomposition found has a cylinder that is forbidden");
+    }
+}
+
 }  // namespace
 
 std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
@@ -371,6 +384,7 @@ std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
         throw Error(ErrorKind::SelfCheck, "no-map",
                     fmt::format("harmonic map: {}", fmt::join(failures, "; ")));
     }
+    keep_allowed(all, options);
     {
         std::array<CoarseMap, kEveningPowers.size()> evened;
         for_each_task(evened.size(), context, [&](std::size_t i, const Context& own) {

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,17 +31,20 @@ struct CoarseOptions {
     SweepFunction function = SweepFunction::Auto;
     std::optional<std::vector<double>> weights;
     int attempt = 0;  // Later ones start elsewhere.
+    // Which solved maps may be taken; empty: all.
+    std::function<bool(const GraphMap&)> is_allowed = {};
 };
 
 // All that could be solved, best first. With automatic weights each decomposition is tried with the
 // lengths of its parts and with equal weights.
-// Throws Error(BadOption) for weights of the wrong number, and as pants_candidates does.
+// Throws Error(BadOption) for weights of the wrong number, Error(SelfCheck, "none-allowed") if no
+// map may be taken, and as pants_candidates does.
 std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
                                       const CoarseOptions& options,
                                       const Context& context);
 
-// The same map with other weights, one for each graph edge, solved again from where it is. `level` is
-// the coarsest.
+// The same map with other weights, one for each graph edge, solved again from where it is. `level`
+// is the coarsest.
 CoarseMap with_other_weights(const Hierarchy::Level& level,
                              const CoarseMap& start,
                              const std::vector<double>& weights,

@@ -332,16 +332,32 @@ TEST(Pillowcase, LeavesCloseOrEndAtSingularPoints) {
     EXPECT_GT(columns, 2U);
 }
 
-TEST(Pillowcase, RefusesAnythingButFourDifferentVertices) {
+TEST(Pillowcase, RefusesAnythingButFourDifferentVerticesOrLess) {
     const TriangleMesh mesh = make_sample("sphere", 1000);
     for (const std::vector<int>& points : std::vector<std::vector<int>>{
-             {1, 2, 3}, {1, 2, 3, 3}, {1, 2, 3, -1}, {1, 2, 3, 1 << 20}, {1, 2, 3, 4, 5}}) {
+             {3, 3}, {1, 2, 3, 3}, {1, 2, 3, -1}, {1, 2, 3, 1 << 20}, {1, 2, 3, 4, 5}}) {
         try {
             foliate_pillowcase(mesh, near(points), {});
             FAIL() << points.size() << " points taken";
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::BadOption);
-            EXPECT_EQ(error.code(), "near-not-four");
+            EXPECT_EQ(error.code(), points.size() > 4 ? "too-many-near" : "bad-near");
+        }
+    }
+}
+
+TEST(Pillowcase, FindsPlacesForTheRestOfItsPoints) {
+    const TriangleMesh mesh = make_sample("sphere", 1000);
+    for (const std::vector<int>& points : std::vector<std::vector<int>>{{17}, {17, 200, 3}}) {
+        const Foliation foliation = foliate_pillowcase(mesh, near(points), {});
+        expect_pillowcase(mesh, foliation);
+        for (const int v : points) {
+            EXPECT_TRUE(std::any_of(
+                foliation.singularities.begin(), foliation.singularities.end(),
+                [&](const Singularity& s) {
+                    return (s.position - mesh.positions[static_cast<std::size_t>(v)]).norm() < 1e-9;
+                }))
+                << v;
         }
     }
 }
@@ -355,8 +371,8 @@ TEST(Pillowcase, SearchFindsPointsWithEvenCellsWhateverTheThreads) {
     }
     Context two;
     two.threads = 2;
-    const std::array<int, 4> found = choose_pillow_points(mesh, {});
-    EXPECT_EQ(found, choose_pillow_points(mesh, two));
+    const std::array<int, 4> found = choose_pillow_points(mesh, {}, {});
+    EXPECT_EQ(found, choose_pillow_points(mesh, {}, two));
     const Foliation chosen = foliate_pillowcase(mesh, {}, {});
     expect_pillowcase(mesh, chosen);
     const Foliation blind = foliate_pillowcase(mesh, near(vertices_at(mesh, kTetrahedron)), {});
