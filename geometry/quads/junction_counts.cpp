@@ -12,6 +12,7 @@
 #include "geometry/error.h"
 #include "geometry/quads/junction_parity.h"
 #include "geometry/quads/spacing.h"
+#include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
 namespace {
@@ -112,12 +113,18 @@ JunctionCounter::JunctionCounter(const Foliation& foliation,
       network_(network),
       wish_(std::move(wish)),
       aspect_(foliation.cylinders.size(), 1.0) {
+    double area = 0.0;
+    double leaves = 0.0;  // Length of a leaf of F* in each column of unit width.
     for (const int c : network.cylinders) {
         const Cylinder& chart = foliation.cylinders[at(c)];
-        aspect_[at(c)] =
-            LevelScale(chart, Axis::F, 0.0).total_mm() / LevelScale(chart, Axis::G, 0.0).total_mm();
+        const double height = LevelScale(chart, Axis::G, 0.0).mean_even_leaf_mm();
+        aspect_[at(c)] = height / LevelScale(chart, Axis::F, 0.0).mean_leaf_mm();
         unit_area_ += square(chart.width) * aspect_[at(c)];
+        area += surface_area(chart.mesh);
+        leaves += chart.width * height;
     }
+    // Strips are as wide as wished on average over their length.
+    wish_.cells *= unit_area_ * area / square(leaves);
     set_wanted();
     program_.emplace(make_program());
 }
@@ -141,8 +148,8 @@ void JunctionCounter::set_wanted() {
     wanted_ = all && fixed_ ? sum : wanted_;
 }
 
-// Numbers: cells of each arc, then half the circumference of each cylinder if that is to be even,
-// then the twist of each. Costs are about the squared slants of cells, summed up.
+// Numbers: cells of each arc, then the periods round each cylinder if those are to be whole, then
+// the twist of each. Costs are about the squared slants of cells, summed up.
 IntegerProgram JunctionCounter::make_program() const {
     const auto arcs = static_cast<Index>(network_.arcs.size());
     const auto rings = static_cast<Index>(network_.cylinders.size());
@@ -179,10 +186,10 @@ IntegerProgram JunctionCounter::make_program() const {
         }
         if (even) {
             zero.push_back(circumference);
-            zero.back()[arcs + r] = -2;
+            zero.back()[arcs + r] = -wish_.period;
         }
         conditions.bounded.row(arcs + r) = circumference;
-        conditions.lower_bound[arcs + r] = even ? 4 : 3;
+        conditions.lower_bound[arcs + r] = has_colours() ? 4 : 3;
         if (wish_.counts[at(c)].cols) {
             forms.row(arcs + r) = kFixedWeight * circumference.cast<double>();
         }
@@ -304,7 +311,7 @@ void JunctionCounter::check_fixed(const JunctionCounts& counts) const {
                                     *wish.rows, c, counts.least_rows[at(c)]));
         }
     }
-    if (wish_.parity != Parity::Even || !fixed_) {
+    if (!has_colours() || !fixed_) {
         return;
     }
     // With rows fixed the colours may not come out even.

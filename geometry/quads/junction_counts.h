@@ -18,6 +18,7 @@ struct JunctionWish {
     std::vector<RowsCols> counts;    // Per cylinder of the foliation: fixed ones,
     std::vector<std::string> paths;  // and their names in the job's parameters.
     Parity parity = Parity::Even;
+    int period = 2;  // Columns round a cylinder are a multiple of it, with Parity::Even.
 };
 
 struct JunctionCounts {
@@ -59,6 +60,8 @@ private:
     };
     using Parities = std::vector<std::optional<int>>;  // Per cylinder; none where it is free.
 
+    // Whether cells are to alternate in two colours.
+    bool has_colours() const { return wish_.parity == Parity::Even && wish_.period % 2 == 0; }
     void set_wanted();
     IntegerProgram make_program() const;
     Eigen::VectorXd lengths(double cells) const;

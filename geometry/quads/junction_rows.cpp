@@ -17,7 +17,7 @@ namespace {
 // Of a row: what is thinner gets none.
 constexpr double kThinnest = 0.25;
 // Strips as wide as asked for in the mean, to 2 %, is more than any other wish.
-constexpr double kCountTolerance = 0.035;
+constexpr double kCountTolerance = 0.025;
 constexpr double kCountWeight = 1e3;
 constexpr double kForbidden = 1e9;
 
@@ -119,7 +119,7 @@ int JunctionCounter::nearest_rows(const JunctionCounts& counts,
 
 // The parity of rows that lets colours alternate everywhere, where that is asked for.
 JunctionCounter::Parities JunctionCounter::row_parities(const JunctionCounts& counts) const {
-    if (wish_.parity != Parity::Even) {
+    if (!has_colours()) {
         return Parities(network_.ends.size());
     }
     std::vector<ParityCost> costs(network_.ends.size(), {0.0, 0.0});

@@ -40,6 +40,8 @@ struct GridOptions {
     Spacing spacing = Spacing::Uniform;
     Junctions junctions = Junctions::Conforming;
     Parity parity = Parity::Even;
+    int period = 2;  // Of the weave's pattern: with Parity::Even columns that close are a multiple
+                     // of it, where cylinders are joined.
     Planarity planar = Planarity::Off;
     bool even_cells = false;
     bool half_sag_offset = true;  // Moves vertices half a sagitta off the surface, so that chord
