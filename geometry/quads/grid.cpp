@@ -27,10 +27,9 @@ constexpr double kSlantWeight = 4.0;
 // as cells 34 % too long.
 constexpr double kCountTolerance = 0.03;
 constexpr double kCountWeight = 20.0;
-// First the neighbourhood of the ideal counts is searched, so far in their logarithms,
-// and if none of those will do, ever farther.
-constexpr double kFirstReach = 0.05;
-constexpr double kLastReach = 8.0;
+// Costs below which grids are looked for, at first and if there are none.
+constexpr double kFirstLimit = 0.003;
+constexpr double kLastLimit = 1e4;
 // Pillowcase: a column that comes back to itself after one round more is as bad as a cell 7 % too
 // long; ten times as many rounds, as one 26 % too long.
 constexpr double kRoundsWeight = 0.1;
@@ -172,34 +171,43 @@ public:
 
     // No rows if none will do.
     Candidate best() {
-        for (double reach = kFirstReach; best_.rows == 0 && reach < kLastReach; reach *= 2.0) {
-            look_within(reach);
+        double limit = kFirstLimit;
+        look_below(limit);
+        while (best_.rows == 0 && limit < kLastLimit) {
+            limit *= 4.0;
+            look_below(limit);
         }
-        if (best_.rows > 0) {
-            const double size = kCountTolerance + std::sqrt(best_.cost / kCountWeight);
-            look_within(0.5 * (size + std::sqrt(best_.cost)));
+        if (best_.cost > limit) {
+            look_below(best_.cost);
         }
         return best_;
     }
 
 private:
-    // Counts whose logarithms are at most `reach` from the ideal ones, and a few more.
-    void look_within(double reach) {
-        const auto range = [reach](double ideal, int least, const std::optional<int>& fixed) {
-            const int low = static_cast<int>(std::floor(ideal * std::exp(-reach))) - 1;
-            const int high = static_cast<int>(std::ceil(ideal * std::exp(reach))) + 1;
-            return fixed ? std::pair{*fixed, *fixed}
-                         : std::pair{std::max(least, low), std::max(least + 3, high)};
-        };
-        const auto rows = range(std::sqrt(cells_ * aspect_), least_.rows, wish_.counts.rows);
-        const auto cols = range(std::sqrt(cells_ / aspect_), least_.cols, wish_.counts.cols);
-        for (int col = cols.first; col <= cols.second; ++col) {
-            if (least_.even_cols && col % 2 != 0) {
+    // All grids that cost less than the limit, and a few more.
+    void look_below(double limit) {
+        const double size = kCountTolerance + std::sqrt(limit / kCountWeight);
+        const bool free = !wish_.counts.rows && !wish_.counts.cols;
+        const double stretch = std::min(std::sqrt(limit), free ? wish_.most_stretch : kLastLimit);
+        const double fewest = cells_ * std::exp(-size);
+        const double most = std::min(cells_ * std::exp(size), kMostCells);
+        const int first_col = wish_.counts.cols.value_or(std::max(
+            least_.cols, static_cast<int>(std::sqrt(fewest / aspect_) * std::exp(-0.5 * stretch))));
+        const int last_col = wish_.counts.cols.value_or(static_cast<int>(
+            std::min(std::sqrt(most / aspect_) * std::exp(0.5 * stretch), most / least_.rows)));
+        for (int cols = first_col; cols <= last_col; ++cols) {
+            if (least_.even_cols && cols % 2 != 0) {
                 continue;
             }
-            for (const int shift : shifts_near(chart_, col)) {
-                for (int row = rows.first; row <= rows.second; ++row) {
-                    look_at(row, col, shift);
+            const double square = aspect_ * cols;
+            const int first_row = wish_.counts.rows.value_or(
+                std::max(least_.rows,
+                         static_cast<int>(std::max(fewest / cols, square * std::exp(-stretch)))));
+            const int last_row = wish_.counts.rows.value_or(
+                static_cast<int>(std::min(most / cols, square * std::exp(stretch))));
+            for (const int shift : shifts_near(chart_, cols)) {
+                for (int rows = first_row; rows <= last_row; ++rows) {
+                    look_at(rows, cols, shift);
                 }
             }
         }
@@ -266,8 +274,7 @@ CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
     const double own_slant = is_slanted(chart.shape) ? chart.shear / chart.height : 0.0;
     const LevelScale g_scale(chart, Axis::G, own_slant);
     // Leaves of F* are as long as the chart is high, in the mean, those of F as it is wide.
-    const double height =
-        may_shift(chart) ? g_scale.mean_even_leaf_mm() : g_scale.mean_leaf_mm();
+    const double height = may_shift(chart) ? g_scale.mean_even_leaf_mm() : g_scale.mean_leaf_mm();
     const double width = f_scale.mean_leaf_mm();
     const double aspect = height / width;
     GridWish even = wish;
