@@ -11,6 +11,7 @@
 #include "fab/totals.h"
 #include "geometry/error.h"
 #include "geometry/foliation_names.h"
+#include "geometry/quads/mean_widths.h"
 
 namespace leafcutter::fab {
 
@@ -137,9 +138,10 @@ json alternatives_json(const JobResult& job) {
 json reached_json(const JobResult& job) {
     json all = json::array();
     for (const ReachedPlace& reached : job.reached) {
-        all.push_back({{"vertex", reached.input_vertex},
-                       {"singularity", reached.singularity < 0 ? json() : json(reached.singularity)},
-                       {"distance_mm", reached.distance_mm}});
+        all.push_back(
+            {{"vertex", reached.input_vertex},
+             {"singularity", reached.singularity < 0 ? json() : json(reached.singularity)},
+             {"distance_mm", reached.distance_mm}});
     }
     return all;
 }
@@ -158,17 +160,25 @@ json foliation_json(const JobResult& job) {
     for (const auto& [position, prongs] : foliation.singularities) {
         singularities.push_back({{"position", point_json(position)}, {"prongs", prongs}});
     }
-    return {{"mode", geometry::name_of(foliation.mode)},
-            {"graph", graph_json(foliation.graph)},
-            {"weights", std::move(weights)},
-            {"energy", foliation.energy},
-            {"iterations", foliation.iterations},
-            {"singularities", std::move(singularities)},
-            {"reached", reached_json(job)},
-            {"punctures", holes_json(job.holes)},
-            {"cell_spread", spread_json(foliation.spread)},
-            {"alternatives", alternatives_json(job)},
-            {"cylinders", std::move(cylinders)}};
+    json result = {{"mode", geometry::name_of(foliation.mode)},
+                   {"graph", graph_json(foliation.graph)},
+                   {"weights", std::move(weights)},
+                   {"energy", foliation.energy},
+                   {"iterations", foliation.iterations},
+                   {"singularities", std::move(singularities)},
+                   {"reached", reached_json(job)},
+                   {"punctures", holes_json(job.holes)},
+                   {"cell_spread", spread_json(foliation.spread)},
+                   {"alternatives", alternatives_json(job)},
+                   {"cylinders", std::move(cylinders)}};
+    if (job.params.foliation.weights) {
+        result["weights_asked"] = *job.params.foliation.weights;
+    }
+    if (foliation.evened) {
+        result["even_cells"] = {{"before", foliation.evened->before},
+                                {"after", foliation.evened->after}};
+    }
+    return result;
 }
 
 json max_avg(const geometry::MaxAvg& value) {
@@ -235,10 +245,12 @@ json planarisation_json(const geometry::PlanarisationPrice& price) {
 
 json family_json(const JobResult& job, Family family) {
     const FamilyTotals totals = total_of(job, family);
+    const geometry::MeanWidths widths = geometry::mean_widths(job.quads);
     return {{"material", job.material_of(family).id},
             {"strips", totals.strips},
             {"closed", totals.closed},
             {"pieces", totals.pieces},
+            {"mean_width_mm", family == Family::Weft ? widths.weft_mm : widths.warp_mm},
             {"length_mm", totals.length_mm},
             {"area_mm2", totals.area_mm2},
             {"weight_g", totals.weight_g}};

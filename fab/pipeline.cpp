@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "fab/certificate.h"
+#include "fab/even_cells.h"
 #include "fab/export/formats.h"
 #include "fab/family_nest.h"
 #include "fab/foliation_options.h"
@@ -169,11 +170,37 @@ private:
         }
     }
 
+    // Weights may move a little so that columns come out whole, where that is left open.
+    void suit_grid(geometry::FoliationOptions& options) const {
+        const geometry::GridOptions& grid = result_.params.grid;
+        const auto is_fixed = [](const geometry::RowsCols& counts) {
+            return counts.rows || counts.cols;
+        };
+        options.even_cells = grid.even_cells;
+        if (grid.junctions == geometry::Junctions::Independent || is_fixed(grid.all) ||
+            std::any_of(grid.per_cylinder.begin(), grid.per_cylinder.end(), is_fixed)) {
+            return;
+        }
+        double area = 0.0;
+        for (const Part& part : result_.parts) {
+            area += part.area;
+        }
+        options.junctions = {.cells = area / (grid.strip_width_mm * grid.strip_width_mm),
+                             .even_columns = grid.parity == geometry::Parity::Even};
+    }
+
     void foliate(const Context& context) {
-        const geometry::FoliationOptions options =
+        geometry::FoliationOptions options =
             foliation_options(result_.params.foliation,
                               {vertex_of_input_, result_.topology, &mesh_, result_.input.scale});
-        result_.foliation = geometry::compute_foliation(mesh_, options, context);
+        suit_grid(options);
+        if (options.even_cells) {
+            EvenedOut even = even_out(mesh_, options, grid_options(), context);
+            result_.foliation = std::move(even.foliation);
+            is_evened_ = even.is_evened;
+        } else {
+            result_.foliation = geometry::compute_foliation(mesh_, options, context);
+        }
         warnings_.insert(warnings_.end(), result_.foliation.warnings.begin(),
                          result_.foliation.warnings.end());
         assign_cylinders(mesh_, result_.topology, result_.foliation.cylinders, result_.parts);
@@ -201,10 +228,16 @@ private:
         }
     }
 
-    void make_quads(const Context& context) {
+    geometry::GridOptions grid_options() const {
         geometry::GridOptions grid = result_.params.grid;
         const int period = pattern_period(result_.params.weave);
         grid.period = period == 1 || period > kLongestPeriod ? 2 : period;
+        return grid;
+    }
+
+    void make_quads(const Context& context) {
+        geometry::GridOptions grid = grid_options();
+        grid.even_cells = is_evened_;
         result_.quads = geometry::build_quad_mesh(result_.foliation, grid, context);
         if (!result_.quads.charts.empty()) {
             result_.foliation.cylinders = std::move(result_.quads.charts);
@@ -329,7 +362,8 @@ private:
     geometry::Mesh mesh_;
     std::vector<int> vertex_of_input_;
     std::vector<std::string> warnings_;
-    double furthest_ = 0.0;  // Progress told so far; never falls.
+    bool is_evened_ = false;  // Cells of even area were asked for and found.
+    double furthest_ = 0.0;   // Progress told so far; never falls.
 };
 
 }  // namespace

@@ -36,8 +36,10 @@ std::string keep_largest(std::vector<SurfacePart>& parts) {
                        100.0 * (1.0 - whole_area(parts.front()) / all));
 }
 
-// Parts take their share of the progress by their number of triangles.
+// Parts take their share of the progress by their number of triangles, of cells by their share of
+// the surface's `area`.
 std::vector<Foliation> foliate_each(const std::vector<SurfacePart>& parts,
+                                    double area,
                                     const FoliationOptions& options,
                                     const Context& context) {
     std::size_t triangles = 0;
@@ -55,8 +57,12 @@ std::vector<Foliation> foliate_each(const std::vector<SurfacePart>& parts,
                 context.progress(stage, done + share * fraction);
             };
         }
+        FoliationOptions of_part = options_of(parts[k], options);
+        if (of_part.junctions) {
+            of_part.junctions->cells *= whole_area(parts[k]) / area;
+        }
         try {
-            foliations.push_back(choose_foliation(parts[k], options_of(parts[k], options), own));
+            foliations.push_back(choose_foliation(parts[k], of_part, own));
         } catch (const Error& error) {
             if (parts.size() == 1) {
                 throw;
@@ -84,12 +90,16 @@ Foliation compute_foliation(const Mesh& mesh,
     }
     std::vector<SurfacePart> parts =
         split_into_parts(to_triangle_mesh(mesh), analyse_topology(mesh), given, context);
+    double area = 0.0;
+    for (const SurfacePart& part : parts) {
+        area += whole_area(part);
+    }
     std::string left_out;
     if (options.components == Components::Largest && parts.size() > 1) {
         left_out = keep_largest(parts);
     }
     check_names(options, parts);
-    Foliation foliation = join_parts(foliate_each(parts, options, context), parts);
+    Foliation foliation = join_parts(foliate_each(parts, area, options, context), parts);
     if (!left_out.empty()) {
         foliation.warnings.insert(foliation.warnings.begin(), std::move(left_out));
     }

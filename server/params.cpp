@@ -51,12 +51,6 @@ geometry::RowsCols read_rows_cols(ObjectReader& reader) {
     return counts;
 }
 
-void refuse_later_grids(const ObjectReader& reader, const geometry::GridOptions& grid) {
-    if (grid.even_cells) {
-        refuse_unsupported(reader.path_of("even_cells"), "even cells");
-    }
-}
-
 void read_grid(ObjectReader& reader, geometry::GridOptions& grid) {
     // A width that nobody asked for may be another.
     grid.may_narrow = grid.may_narrow && reader.get("strip_width_mm") == nullptr;
@@ -81,7 +75,6 @@ void read_grid(ObjectReader& reader, geometry::GridOptions& grid) {
     read_choice(reader, "planar", grid.planar, kPlanarities);
     reader.boolean("even_cells", grid.even_cells);
     reader.boolean("half_sag_offset", grid.half_sag_offset);
-    refuse_later_grids(reader, grid);
 }
 
 std::vector<std::vector<int>> read_matrix(const json& value, const std::string& path) {

@@ -312,13 +312,6 @@ TEST(QuadMesh, RefusesWidthsThatMakeNoSense) {
     }
 }
 
-TEST(QuadMesh, SaysByPathWhatIsNotBuiltYet) {
-    const Foliation square = testing::flat_rectangle(100.0, 100.0);
-    GridOptions options;
-    options.even_cells = true;
-    EXPECT_EQ(refusal(square, options, ErrorKind::NotSupported).find("grid.even_cells"), 0U);
-}
-
 TEST(QuadMesh, KeepsSeveralCylindersApart) {
     Foliation two = testing::flat_rectangle(100.0, 100.0);
     two.cylinders.push_back(testing::round_cylinder(20.0, 50.0).cylinders[0]);

@@ -233,11 +233,9 @@ TEST(Params, RefuseWhatCanMeanNothingTogether) {
                 StartsWith("foliation.punctures: "));
 }
 
-TEST(Params, SayWhatIsNotComputedYet) {
-    for (const char* text : {R"({"grid": {"even_cells": true}})"}) {
-        EXPECT_THAT(refusal(text, ErrorKind::NotSupported), HasSubstr(": not supported yet: "))
-            << text;
-    }
+TEST(Params, TakeEvenCells) {
+    const auto params = params_from_json(parse_params_text(R"({"grid": {"even_cells": true}})"));
+    EXPECT_TRUE(params.grid.even_cells);
 }
 
 TEST(Params, TakeANameThatLooksLikeANumber) {
