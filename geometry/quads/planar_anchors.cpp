@@ -20,6 +20,9 @@ constexpr double kHeight = 2.0;
 constexpr double kBoundary = 2.0;
 constexpr double kStay = 0.02;
 
+// Beside thin cells, places count against their width: that many times it.
+constexpr double kThinCells = 3.0;
+
 // What lies further than this beside the nearest point, in cells, lies beyond the surface's end.
 constexpr double kBeyond = 0.05;
 
@@ -59,6 +62,7 @@ PlanarAnchors::PlanarAnchors(const QuadMesh& mesh, const TriangleMesh& surface)
     : triangles_(surface),
       closest_(surface),
       size_(sizes_at_vertices(mesh)),
+      shortest_(size_),
       height_(mesh.vertices.size(), 0.0),
       feet_(mesh.vertices.size()),
       held_(mesh.vertices.size()),
@@ -67,6 +71,19 @@ PlanarAnchors::PlanarAnchors(const QuadMesh& mesh, const TriangleMesh& surface)
       corner_(mesh.vertices.size(), 0),
       segment_(mesh.vertices.size(), -1),
       origin_(mesh.vertices) {
+    for (const auto& quad : mesh.quads) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            const std::size_t from = at(quad[i]);
+            const std::size_t to = at(quad[(i + 1) % 4]);
+            const double length = (mesh.vertices[to] - mesh.vertices[from]).norm();
+            shortest_[from] = std::min(shortest_[from], length);
+            shortest_[to] = std::min(shortest_[to], length);
+        }
+    }
+    for (std::size_t v = 0; v < size_.size(); ++v) {
+        size_[v] = std::min(size_[v], kThinCells * shortest_[v]);
+        size_[v] = size_[v] > 0.0 ? size_[v] : 1.0;
+    }
     find_boundary(mesh);
     int near = -1;
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {

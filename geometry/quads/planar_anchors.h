@@ -35,6 +35,9 @@ public:
     // Mean length of the sides at the vertex, at the start.
     double size(std::size_t vertex) const { return size_[vertex]; }
 
+    // Length of the shortest of them.
+    double shortest_side(std::size_t vertex) const { return shortest_[vertex]; }
+
     // Along the surface's normal, at the closest point.
     Eigen::Vector3d normal_at(const Eigen::Vector3d& point) const;
     const ClosestPoint& surface() const { return closest_; }
@@ -52,6 +55,7 @@ private:
     const TriangleMesh& triangles_;
     ClosestPoint closest_;
     std::vector<double> size_;
+    std::vector<double> shortest_;
     std::vector<double> height_;  // Over the surface, at the start.
     std::vector<Foot> feet_;
     std::vector<Anchor> held_;

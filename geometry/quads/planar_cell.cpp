@@ -1,6 +1,8 @@
 // Planarity: D = n·(q − p), with n the unit normal of both diagonals and p, q their closest points;
 // as these are stationary, the gradient is n times the weights of the corners in p and q, exactly.
 //
+// D counts against the width of a cell, so that thin ones don't twist while wide ones move.
+//
 // Square corners are asked for by the cotangent of the angle: it is the cosine near 90 degrees and
 // grows without bound as a corner closes or straightens, so that cells neither turn concave nor
 // collapse. Lengths are asked for by (l/l0 − l0/l) / 2 for the same reason.
@@ -26,6 +28,9 @@ constexpr double kFairness = 0.1;
 // Steeper corners and shorter sides (against their start) pull no harder.
 constexpr double kSmallestSine = 0.25;
 constexpr double kSmallestStretch = 0.02;
+
+// Width of a cell, against its diagonals, below which it counts as no thinner.
+constexpr double kThinnest = 0.02;
 
 // Sides belong to two cells, and count half in each.
 const double kHalf = std::sqrt(0.5);
@@ -119,6 +124,7 @@ struct Crossing {
     double on_bd = 0.5;  // q = b + on_bd (d − b).
     double gap = 0.0;
     double diagonal = 0.0;  // Mean length.
+    double extent = 0.0;    // As `diagonal`; of a thin cell its width, twice.
     bool flat = false;      // No area: nothing is known.
 };
 
@@ -134,6 +140,7 @@ Crossing crossing_of(const CellCorners& at) {
         return found;
     }
     found.normal = cross / area;
+    found.extent = std::clamp(area / found.diagonal, kThinnest * found.diagonal, found.diagonal);
     const Vector3d ab = at[1] - at[0];
     found.gap = ab.dot(found.normal);
     // Of ab = on_ac ac − on_bd bd + gap n.
@@ -151,9 +158,9 @@ void planar_row(const CellCorners& at,
         return;
     }
     residual[kPlanarRow] =
-        wishes.planarity * crossing.gap / crossing.diagonal + wishes.pull / wishes.planarity;
+        wishes.planarity * crossing.gap / crossing.extent + wishes.pull / wishes.planarity;
     if (jacobian != nullptr) {
-        const Vector3d normal = wishes.planarity / crossing.diagonal * crossing.normal;
+        const Vector3d normal = wishes.planarity / crossing.extent * crossing.normal;
         add_gradient(*jacobian, kPlanarRow, 0, -(1.0 - crossing.on_ac) * normal);
         add_gradient(*jacobian, kPlanarRow, 1, (1.0 - crossing.on_bd) * normal);
         add_gradient(*jacobian, kPlanarRow, 2, -crossing.on_ac * normal);
@@ -199,6 +206,11 @@ double smallest_sine(const CellCorners& at) {
         smallest = std::min(smallest, u.cross(w).dot(normal) / lengths);
     }
     return smallest;
+}
+
+double twist_of(const CellCorners& corners) {
+    const Crossing crossing = crossing_of(corners);
+    return crossing.flat ? 0.0 : crossing.gap / crossing.extent;
 }
 
 double smallest_stretch(const CellCorners& start, const CellCorners& corners) {

@@ -17,7 +17,7 @@ using CellResidual = Eigen::Matrix<double, kCellRows, 1>;
 using CellJacobian = Eigen::Matrix<double, kCellRows, 12>;  // By a, b, c, d.
 
 struct CellWishes {
-    double planarity = 0.0;  // Weight of the distance between the diagonals over their mean length.
+    double planarity = 0.0;  // Weight of the twist, see twist_of().
     double pull = 0.0;       // Multiplier of the constraint "planar": augmented Lagrangian.
     double firmness = 1.0;   // Of angles and lengths, more where a cell would collapse.
 };
@@ -34,6 +34,9 @@ double bend_of(const CellCorners& corners);
 
 // The smallest sine of its corners' angles, seen along the cell's normal: <= 0 for a concave cell.
 double smallest_sine(const CellCorners& corners);
+
+// The same against the width of thin cells: what the row of planarity weighs.
+double twist_of(const CellCorners& corners);
 
 // The smallest ratio of the length of a side to its length at the start.
 double smallest_stretch(const CellCorners& start, const CellCorners& corners);

@@ -16,6 +16,7 @@ using Vertices = std::vector<Vector3d>;
 
 // No vertex goes further in one step, in cells.
 constexpr double kLongestStep = 0.3;
+constexpr double kLongestOfSide = 0.5;  // Nor further than that part of its shortest side.
 
 // Cells may not come below, nor those that lie below already get worse.
 constexpr double kSmallestSine = 0.02;
@@ -86,7 +87,7 @@ PlanarSolver::Bend PlanarSolver::bend_of_cells(const Vertices& vertices) const {
 
 void PlanarSolver::raise_pulls(double weight) {
     for (std::size_t cell = 0; cell < mesh_.quads.size(); ++cell) {
-        state_.pull[cell] += weight * weight * bend_of(corners_of(cell, state_.vertices));
+        state_.pull[cell] += weight * weight * twist_of(corners_of(cell, state_.vertices));
     }
 }
 
@@ -155,8 +156,8 @@ void PlanarSolver::firm_up_weak_cells() {
     for (std::size_t cell = 0; cell < mesh_.quads.size(); ++cell) {
         const CellCorners now = corners_of(cell, state_.vertices);
         const bool thin = smallest_stretch(start_[cell], now) < kWeakStretch;
-        const bool concave = smallest_sine(now) < std::min(kWeakSine, smallest_sine(start_[cell]));
-        if (thin || concave) {
+        const double sine = std::min(kWeakSine, smallest_sine(start_[cell]));
+        if (thin || smallest_sine(now) < sine) {
             double& firmness = state_.firmness[cell];
             firmness = std::min(kFirming * firmness, kFirmest);
         }
@@ -198,8 +199,9 @@ std::vector<char> PlanarSolver::spoiled(const Vertices& vertices) const {
         const CellCorners before = corners_of(cell, state_.vertices);
         const double sine = std::min(kSmallestSine, smallest_sine(before));
         const double stretch = std::min(kSmallestStretch, smallest_stretch(start_[cell], before));
-        of_cell[cell] = static_cast<char>(smallest_sine(now) < sine ||
-                                          smallest_stretch(start_[cell], now) < stretch);
+        const bool concave = smallest_sine(now) < sine;
+        const bool squashed = smallest_stretch(start_[cell], now) < stretch;
+        of_cell[cell] = static_cast<char>(concave || squashed);
     });
     return of_cell;
 }
@@ -229,7 +231,9 @@ Vertices PlanarSolver::safe_steps() {
         steps[v] = -solution.segment<3>(static_cast<Eigen::Index>(3 * v));
         const double length = steps[v].norm() / anchors_.size(v);
         longest_ = std::max(longest_, length);
-        steps[v] *= std::min(1.0, kLongestStep / std::max(length, 1e-300));
+        const double allowed =
+            std::min(kLongestStep, kLongestOfSide * anchors_.shortest_side(v) / anchors_.size(v));
+        steps[v] *= std::min(1.0, allowed / std::max(length, 1e-300));
     }
     Vertices moved(steps.size());
     for (int attempt = 0; attempt < kLocalAttempts; ++attempt) {
