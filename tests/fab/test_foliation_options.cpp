@@ -41,13 +41,15 @@ TEST(FoliationOptions, NumberVerticesAsTheMeshDoes) {
     params.corners = {7, 6, 5, 4};
     params.poles = {3, 7};
     params.loops = {{2, 3, 4}};
-    params.near = {5};
+    params.near = {{.vertex = 5, .position = {}}};
+    params.forbid = {{5, 6, 7}};
     params.punctures = {{6, 2.5}};
     const geometry::FoliationOptions options = translated(params);
     EXPECT_EQ(options.corners, (std::array<int, 4>{5, 4, 3, 2}));
     EXPECT_EQ(options.poles, (std::array<int, 2>{1, 5}));
     EXPECT_EQ(options.loops, (std::vector<std::vector<int>>{{0, 1, 2}}));
     EXPECT_EQ(options.near, std::vector<int>{3});
+    EXPECT_EQ(options.forbidden_loops, (std::vector<std::vector<int>>{{3, 4, 5}}));
     ASSERT_EQ(options.punctures.size(), 1U);
     EXPECT_EQ(options.punctures[0].vertex, 4);
     EXPECT_EQ(options.punctures[0].radius, 2.5);
@@ -104,8 +106,32 @@ TEST(FoliationOptions, NameTheVertexThatIsNotThere) {
     params.punctures = {{9, 1.0}};
     EXPECT_THAT(refusal(params), StartsWith("foliation.punctures[0].vertex: "));
     params = {};
-    params.near = {3, 100};
+    params.near = {{.vertex = 3, .position = {}}, {.vertex = 100, .position = {}}};
     EXPECT_THAT(refusal(params), StartsWith("foliation.singularities[1].near: "));
+}
+
+// Vertices 1 and 2 of the file are one of the mesh.
+TEST(FoliationOptions, RefuseTheSamePlaceTwice) {
+    FoliationParams params;
+    params.near = {{.vertex = 1, .position = {}}, {.vertex = 2, .position = {}}};
+    EXPECT_EQ(refusal(params),
+              "foliation.singularities[1].near: the same vertex of the model as singularities[0]");
+}
+
+TEST(FoliationOptions, FindTheVertexNearestToAPositionOfTheFile) {
+    geometry::Mesh mesh;
+    const double scale = 10.0;
+    for (const Eigen::Vector3d& corner :
+         {Eigen::Vector3d{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}) {
+        mesh.add_vertex(scale * corner);
+    }
+    FoliationParams params;
+    params.near = {{.vertex = {}, .position = {0.1, 0.8, -0.2}},
+                   {.vertex = {}, .position = {9.0, 0.0, 8.0}}};
+    const geometry::Topology topology = two_loops();
+    const geometry::FoliationOptions options =
+        foliation_options(params, {kVertexOfInput, topology, &mesh, scale});
+    EXPECT_EQ(options.near, (std::vector<int>{2, 1}));
 }
 
 TEST(FoliationOptions, RefuseVerticesOfSeveralLoopsOrNone) {

@@ -36,6 +36,7 @@ TEST(Params, TakeEveryKeyOfTheDocumentation) {
         "foliation": {"mode": "disk", "pants": "reeb", "loops": [], "weights": "auto",
                       "corners": [3, 1, 4, 15], "function": "auto", "sources": [], "sinks": [],
                       "punctures": "auto", "singularities": [], "torus_rings": "short",
+                      "forbid": [],
                       "components": "each"},
         "grid": {"strip_width_mm": 5, "rows": 7, "cols": 8, "cylinders": [{"rows": 3}, {"cols": 4}],
                  "spacing": "uniform", "junctions": "independent", "parity": "any",
@@ -159,6 +160,8 @@ TEST(Params, ComeBackFromTheirJsonInEveryMode) {
           R"({"punctures": [{"vertex": 7, "radius_mm": 1.25}]})",
           R"({"mode": "sphere-pillowcase",
               "singularities": [{"near": 1}, {"near": 2}, {"near": 3}, {"near": 4}]})",
+          R"({"mode": "pants", "forbid": [[4, 5, 6], [9, 8, 7]],
+              "singularities": [{"near": [0.5, -2.0, 31.25]}, {"near": 12}]})",
           R"({"mode": "torus", "torus_rings": "long"})"}) {
         const auto given = nlohmann::json::parse(text);
         const auto whole = params_to_json(params_from_json({{"foliation", given}}));
@@ -200,8 +203,17 @@ TEST(Params, RefuseWrongFoliationValuesByFullPath) {
     EXPECT_EQ(refused(R"("punctures": "some")"), "foliation.punctures: must be one of auto, none");
     EXPECT_EQ(refused(R"("mode": "sphere-polar", "poles": [1, 1])"),
               "foliation.poles: must be two different vertices");
-    EXPECT_THAT(refused(R"("mode": "sphere-pillowcase", "singularities": [{"near": 1}])"),
-                StartsWith("foliation.singularities: must be near four different vertices"));
+    EXPECT_EQ(refused(R"("singularities": [{"near": 1}, {"near": 2}, {"near": 1}])"),
+              "foliation.singularities[2].near: is wanted twice");
+    EXPECT_THAT(refused(R"("singularities": [{"near": "top"}])"),
+                StartsWith("foliation.singularities[0].near: must be a vertex, or a position"));
+    EXPECT_THAT(refused(R"("singularities": [{"near": [1, 2]}])"),
+                StartsWith("foliation.singularities[0].near: must be a vertex, or a position"));
+    EXPECT_THAT(refused(R"("singularities": [{"near": [1, 2, "z"]}])"),
+                StartsWith("foliation.singularities[0].near[2]: "));
+    EXPECT_THAT(refused(R"("forbid": [[1, 2]])"),
+                StartsWith("foliation.forbid[0]: must be three or more different vertices"));
+    EXPECT_THAT(refused(R"("forbid": 7)"), StartsWith("foliation.forbid: must be a list of loops"));
     EXPECT_EQ(refused(R"("mode": "sphere-pillowcase", "singularities": [{}])"),
               "foliation.singularities[0].near: must be given");
 }
@@ -216,9 +228,12 @@ TEST(Params, RefuseWhatCanMeanNothingTogether) {
     EXPECT_EQ(refused(R"("poles": [1, 2])"),
               "foliation.poles: foliation.mode \"auto\" doesn't use it; set foliation.mode to "
               "\"sphere-polar\"");
-    const std::string four = R"("singularities": [{"near": 1}, {"near": 2}, {"near": 3},
-                                                  {"near": 4}])";
-    EXPECT_THAT(refused(four), HasSubstr("set foliation.mode to \"sphere-pillowcase\""));
+    EXPECT_THAT(refused(R"("mode": "disk", "singularities": [{"near": 1}])"),
+                StartsWith("foliation.singularities: foliation.mode \"disk\" doesn't use it"));
+    EXPECT_EQ(refused(R"("mode": "sphere-polar", "poles": [1, 2], "singularities": [{"near": 1}])"),
+              "foliation.singularities: not together with foliation.poles, which places them");
+    EXPECT_THAT(refused(R"("mode": "one-form", "forbid": [[1, 2, 3]])"),
+                HasSubstr("set foliation.mode to \"auto\" or \"pants\""));
     EXPECT_THAT(refused(R"("mode": "pants", "sources": [0])"), StartsWith("foliation.sources: "));
     EXPECT_THAT(refused(R"("sinks": [0])"), HasSubstr("\"one-form\""));
     EXPECT_THAT(refused(R"("mode": "disk", "pants": "tunnel-loops")"),
