@@ -38,6 +38,8 @@ constexpr double kFoldedShare = 0.005;
 constexpr double kFewFolded = 1.0;
 // The period of a plain weave: the least that a surface can carry everywhere.
 constexpr int kColours = 2;
+// Mean square slant and stretch of cells that whole periods of another pattern may cost.
+constexpr double kWorthPeriods = 0.1;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -221,19 +223,21 @@ public:
           area_(joined_area(foliation, network)),
           counter_(foliation, network, wish_of(foliation, options, area_)) {}
 
-    // Whether strips as wide as wanted can carry the topology.
-    bool fits(const Context& context) const {
-        const double size = counter_.wanted_cells();
-        return counter_.has_fixed_counts() ||
-               counter_.choose(size, context).cells <= kMostExcess * size;
+    // What strips as wide as wanted distort; none if they can't carry the topology.
+    std::optional<double> distortion(const Context& context) const {
+        const JunctionCounts counts = counter_.choose(counter_.wanted_cells(), context);
+        const bool fits =
+            counter_.has_fixed_counts() || counts.cells <= kMostExcess * counter_.wanted_cells();
+        return fits ? std::optional(counts.distortion) : std::nullopt;
     }
 
-    JoinedMesh run(const Context& context) {
+    JoinedMesh run(const Context& context) const {
         double size = counter_.wanted_cells();
         double most = 0.0;  // Cells, once there are enough of them for the topology.
+        int tightest = -1;
         for (int tries = 0; tries < kMostSizes && (most == 0.0 || size < most); ++tries) {
             const JunctionCounts counts = counter_.choose(size, context);
-            tightest_ = tightest_ < 0 ? counts.tightest : tightest_;
+            tightest = tightest < 0 ? counts.tightest : tightest;
             if (!counter_.has_fixed_counts() && counts.cells > kMostExcess * size) {
                 size = counts.cells;
                 continue;
@@ -243,7 +247,7 @@ public:
             JoinedMesh mesh = build(foliation_, arcs, counts, options_, context);
             const double folded = static_cast<double>(mesh.folded);
             if (folded <= std::max(kFewFolded, kFoldedShare * counts.cells)) {
-                return accepted(std::move(mesh), counts, size);
+                return accepted(std::move(mesh), counts, size, tightest);
             }
             if (counter_.has_fixed_counts()) {
                 break;
@@ -266,17 +270,20 @@ private:
         return area;
     }
 
-    JoinedMesh accepted(JoinedMesh mesh, const JunctionCounts& counts, double size) const {
+    JoinedMesh accepted(JoinedMesh mesh,
+                        const JunctionCounts& counts,
+                        double size,
+                        int tightest) const {
         if (size > counter_.wanted_cells()) {
             const double width =
                 rounded_down(options_.strip_width_mm * std::sqrt(counter_.wanted_cells() / size));
             if (!options_.may_narrow) {
-                refuse(width, size);
+                refuse(width, size, tightest);
             }
             mesh.warnings.push_back(fmt::format(
                 "strips are {:.4g} mm wide: wider ones can't go on from one cylinder into the "
                 "next, most of all in cylinder {}",
-                width, tightest_));
+                width, tightest));
         }
         if (mesh.folded > 0) {
             mesh.warnings.push_back(fmt::format(
@@ -295,13 +302,13 @@ private:
         return mesh;
     }
 
-    [[noreturn]] void refuse(double width, double size) const {
+    [[noreturn]] void refuse(double width, double size, int tightest) const {
         throw Error(
             ErrorKind::BadOption, "strips-too-wide",
             fmt::format("grid.strip_width_mm: strips of {:.4g} mm are too wide to go on from one "
                         "cylinder into the next, most of all in cylinder {}; use at most {:.4g} mm "
                         "(about {:.0f} quads), or grid.junctions \"independent\"",
-                        options_.strip_width_mm, tightest_, width, size));
+                        options_.strip_width_mm, tightest, width, size));
     }
 
     const Foliation& foliation_;
@@ -309,7 +316,6 @@ private:
     const GridOptions& options_;
     double area_ = 0.0;
     JunctionCounter counter_;
-    int tightest_ = -1;  // At the wanted size.
 };
 
 }  // namespace
@@ -321,12 +327,18 @@ JoinedMesh join_cylinders(const Foliation& foliation,
     if (network.cylinders.empty()) {
         return {};
     }
-    GridOptions wish = options;
-    if (options.parity == Parity::Even && options.period != kColours &&
-        !SizeSearch(foliation, network, options).fits(context)) {
-        wish.period = kColours;  // The pattern breaks along a column.
+    const SizeSearch search(foliation, network, options);
+    if (options.parity != Parity::Even || options.period == kColours) {
+        return search.run(context);
     }
-    return SizeSearch(foliation, network, wish).run(context);
+    GridOptions alternating = options;
+    alternating.period = kColours;
+    const SizeSearch plain(foliation, network, alternating);
+    const std::optional<double> whole = search.distortion(context);
+    const std::optional<double> least = plain.distortion(context);
+    // Else the pattern breaks along a column.
+    const bool is_worth_it = whole && (!least || *whole <= *least + kWorthPeriods);
+    return (is_worth_it ? search : plain).run(context);
 }
 
 }  // namespace leafcutter::geometry
