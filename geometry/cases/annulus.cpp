@@ -14,6 +14,9 @@
 namespace leafcutter::geometry {
 namespace {
 
+constexpr double kTrianglesInCell = 4.0;
+constexpr std::size_t kManyTriangles = 30'000;
+
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
@@ -110,6 +113,24 @@ SolvedChart solve_ring(const ChartSurface& surface, int origin) {
     return solved;
 }
 
+// Where cells will be hardly larger than triangles their corners would follow each triangle's own
+// slope: all triangles are split, flat.
+ChartSurface fine_enough(ChartSurface surface,
+                         const FoliationOptions& options,
+                         const Context& context) {
+    if (!options.junctions || options.refinement == Refinement::Off) {
+        return surface;
+    }
+    const double wanted = kTrianglesInCell * options.junctions->cells;
+    while (static_cast<double>(surface.mesh.triangles.size()) < wanted &&
+           surface.mesh.triangles.size() < kManyTriangles) {
+        context.check();
+        const std::vector<char> all(surface.edges.from.size(), 1);
+        surface = split_edges(std::move(surface), all);
+    }
+    return surface;
+}
+
 }  // namespace
 
 Foliation foliate_annulus(const TriangleMesh& mesh,
@@ -129,7 +150,8 @@ Foliation foliate_ring(const TriangleMesh& mesh,
     const int lower = rings[0].front();
     const int upper = rings[1].front();
     SolvedChart solved = solve_resolved(
-        start_surface(mesh, lines_of_vertices(rings, mesh.positions.size())),
+        fine_enough(start_surface(mesh, lines_of_vertices(rings, mesh.positions.size())), options,
+                    context),
         [lower](const ChartSurface& surface) { return solve_ring(surface, lower); },
         options.refinement, context);
     // The surface lies left of both loops, so g grows along the lower and falls along the upper.

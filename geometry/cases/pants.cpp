@@ -133,12 +133,18 @@ Solved carry_up(const Hierarchy& hierarchy, const CoarseMap& coarse, const Conte
     return solved;
 }
 
-// The chart of one piece, its f from 0 to the weight of its graph edge.
+// The chart of one piece, its f from 0 to the weight of its graph edge, which has this share of the
+// surface.
 Foliation chart_of(const Piece& piece,
+                   double share,
                    double height,
                    const FoliationOptions& options,
                    const Context& context) {
-    Foliation ring = foliate_ring(piece.mesh, piece.loops, options, context);
+    FoliationOptions own = options;
+    if (own.junctions) {
+        own.junctions->cells *= share;
+    }
+    Foliation ring = foliate_ring(piece.mesh, piece.loops, own, context);
     Cylinder& cylinder = ring.cylinders.front();
     cylinder.width *= height;
     cylinder.height *= height;
@@ -200,7 +206,8 @@ Foliation assemble(Solved solved, const FoliationOptions& options, const Context
     if (!solved.report.converged) {
         foliation.warnings.emplace_back("the harmonic map stopped before it was quite still");
     }
-    report_squeezed(solved.sliced, area_of(solved.mesh), foliation.warnings);
+    const double whole = area_of(solved.mesh);
+    report_squeezed(solved.sliced, whole, foliation.warnings);
     for (const Eigen::Vector3d& position : solved.sliced.three_prongs) {
         foliation.singularities.push_back({position, 3});
     }
@@ -217,7 +224,8 @@ Foliation assemble(Solved solved, const FoliationOptions& options, const Context
     std::vector<Foliation> rings(pieces.size());
     for_each_task(order.size(), context, [&](std::size_t i, const Context& own) {
         const std::size_t e = order[i];
-        rings[e] = chart_of(pieces[e], foliation.graph.edges[e].weight, options, own);
+        const double share = area_of(pieces[e].mesh) / whole;
+        rings[e] = chart_of(pieces[e], share, foliation.graph.edges[e].weight, options, own);
     });
     for (std::size_t e = 0; e < rings.size(); ++e) {
         rings[e].cylinders.front().graph_edge = static_cast<int>(e);
