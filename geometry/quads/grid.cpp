@@ -27,6 +27,8 @@ constexpr double kSlantWeight = 4.0;
 // as cells 34 % too long.
 constexpr double kCountTolerance = 0.03;
 constexpr double kCountWeight = 20.0;
+// Of a pattern that does not close: as much as cells 25 % too long.
+constexpr double kBrokenPattern = 0.05;
 // Costs below which grids are looked for, at first and if there are none.
 constexpr double kFirstLimit = 0.003;
 constexpr double kLastLimit = 1e4;
@@ -226,10 +228,20 @@ private:
         }
         const double cost = kCountWeight * square(off) + square(stretch) +
                             square(kSlantWeight * slant_of(chart_, cols, shift)) +
-                            square(kRoundsWeight * std::log(rounds_of(chart_.shape, cols, shift)));
+                            square(kRoundsWeight * std::log(rounds_of(chart_.shape, cols, shift))) +
+                            (closes_pattern(rows, cols, shift) ? 0.0 : kBrokenPattern);
         if (best_.rows == 0 || cost < best_.cost) {
             best_ = {.rows = rows, .cols = cols, .shift = shift, .cost = cost};
         }
+    }
+
+    bool closes_pattern(int rows, int cols, int shift) const {
+        if (wish_.parity != Parity::Even || chart_.shape == ChartShape::Rectangle) {
+            return true;
+        }
+        const bool along = cols % wish_.period == 0;
+        const bool across = rows % wish_.period == 0 && shift % wish_.period == 0;
+        return wish_.period <= 2 || (along && (across || chart_.shape != ChartShape::Torus));
     }
 
     const Cylinder& chart_;

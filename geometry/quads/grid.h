@@ -27,6 +27,8 @@ struct GridWish {
     double cells = 1.0;  // Wanted number, if `counts` leaves it open.
     RowsCols counts;     // Fixed ones.
     Parity parity = Parity::Even;
+    int period =
+        2;  // Of the weave's pattern: with Parity::Even it should close, if it costs little.
     // Of cells, how much longer than wide or wider than long they may be, as a logarithm. Not for
     // fixed counts.
     double most_stretch = std::numeric_limits<double>::infinity();

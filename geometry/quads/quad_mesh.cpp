@@ -57,6 +57,7 @@ GridWish wish_for(std::size_t cylinder, double area, const GridOptions& options)
     GridWish wish{.cells = area / (options.strip_width_mm * options.strip_width_mm),
                   .counts = options.all,
                   .parity = options.parity,
+                  .period = options.period,
                   .path = "grid"};
     if (cylinder < options.per_cylinder.size()) {
         const RowsCols& own = options.per_cylinder[cylinder];
