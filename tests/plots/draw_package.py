@@ -3,6 +3,10 @@
 singular points yellow. What lies behind the surface is hidden.
 
 usage: draw_package.py PACKAGE… [-o FOLDER] [--size PIXELS] [--family both|weft|warp|none] [--stride N]
+                       [--heat distance|angle|area|region|planarity|shear]
+
+With --heat the quads instead, each in the colour of its figure in quality.json: from dark blue for 0 by green to yellow
+for what one quad of fifty is above; red above three times that.
 
 Writes FOLDER/PACKAGE.png: six views along the surface's principal axes, both ways. Needs numpy.
 """
@@ -15,6 +19,11 @@ from pathlib import Path
 
 import numpy as np
 
+HEATS = {"distance": "distance_percent", "angle": "corner_deviation_deg", "area": "area_percent", "region": "region_percent",
+         "planarity": "planarity_percent", "shear": "shear_deg"}
+# Dark blue, teal, green, yellow: lightness grows all the way, so that a grey print tells as much.
+RAMP = np.array([[48, 18, 89], [42, 82, 140], [33, 145, 140], [94, 201, 98], [253, 231, 37]], float)
+FAR_OUT = (200, 30, 30)
 FINER = 2  # Drawn this many times larger, then averaged: smooth lines.
 BLUE, RED, BLACK, YELLOW = (20, 40, 130), (190, 30, 30), (0, 0, 0), (255, 220, 0)
 TYPES = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
@@ -48,6 +57,24 @@ def read_ply(path):
     table = np.array([line.split() for line in lines[:vertices[1]]], dtype=float)
     triangles = np.array([line.split()[1:4] for line in lines[vertices[1]:vertices[1] + faces[1]]], dtype=int)
     return {name: table[:, i] for i, name in enumerate(names)}, triangles
+
+
+def read_quads(path):
+    """Vertices and quads of quads.obj."""
+    lines = [line.split() for line in path.read_text().splitlines()]
+    return (np.array([words[1:4] for words in lines if words[0] == "v"], dtype=float),
+            np.array([words[1:5] for words in lines if words[0] == "f"], dtype=int) - 1)
+
+
+def heat_colours(values):
+    """A colour for each value and what the yellow end stands for."""
+    top = max(float(np.quantile(values, 0.98)), 1e-12)
+    place = np.clip(values / top, 0, 1) * (len(RAMP) - 1)
+    low = np.minimum(place.astype(int), len(RAMP) - 2)
+    share = (place - low)[:, None]
+    colours = RAMP[low] * (1 - share) + RAMP[low + 1] * share
+    colours[values > 3 * top] = FAR_OUT
+    return colours, top
 
 
 def write_png(path, picture):
@@ -174,27 +201,43 @@ def without_blank_rows(picture):
     return picture[max(drawn[0] - 10, 0):drawn[-1] + 11] if drawn.size else picture
 
 
-def draw(package, arguments):
-    vertices, triangles = read_ply(package / "surface.ply")
+def draw_foliation(canvas, package, arguments, vertices, triangles):
     leaves = json.loads((package / "leaves.json").read_text())
     points = np.stack([vertices[k] for k in "xyz"], 1)
     cylinder = vertices.get("cylinder", np.zeros(len(points)))
     palette = cylinder_colours(int(cylinder.max()) + 1)
-    colours = palette[np.maximum(face_cylinders(cylinder, triangles), 0)]
-    pictures = []
+    canvas.surface(points, triangles, palette[np.maximum(face_cylinders(cylinder, triangles), 0)])
+    for leaf in leaves["leaves"][::arguments.stride]:
+        if arguments.family in ("both", leaf["family"]):
+            canvas.line(leaf["points"], leaf["closed"], 0.5 * FINER, BLUE if leaf["family"] == "weft" else RED)
+    for curve in leaves.get("critical_graph", []):
+        canvas.line(curve["points"], False, 1.25 * FINER, BLACK)
+    for singular in leaves.get("singularities", []):
+        canvas.point(singular["position"], 3.0 * FINER, YELLOW)
+
+
+def draw_heat(canvas, package, arguments):
+    points, quads = read_quads(package / "quads.obj")
+    name = HEATS[arguments.heat]
+    values = np.abs(json.loads((package / "quality.json").read_text())["per_quad"][name])
+    colours, top = heat_colours(values)
+    canvas.surface(points, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]), np.concatenate([colours, colours]))
+    return f"{name}: yellow from {top:.3g}, largest {values.max():.3g}, mean {values.mean():.3g}"
+
+
+def draw(package, arguments):
+    vertices, triangles = read_ply(package / "surface.ply")
+    points = np.stack([vertices[k] for k in "xyz"], 1)
+    pictures, legend = [], ""
     for view in views_of(axes_of(points)):
         canvas = Canvas(arguments.size, view, points)
-        canvas.surface(points, triangles, colours)
-        for leaf in leaves["leaves"][::arguments.stride]:
-            if arguments.family in ("both", leaf["family"]):
-                canvas.line(leaf["points"], leaf["closed"], 0.5 * FINER, BLUE if leaf["family"] == "weft" else RED)
-        for curve in leaves.get("critical_graph", []):
-            canvas.line(curve["points"], False, 1.25 * FINER, BLACK)
-        for singular in leaves.get("singularities", []):
-            canvas.point(singular["position"], 3.0 * FINER, YELLOW)
+        if arguments.heat:
+            legend = draw_heat(canvas, package, arguments)
+        else:
+            draw_foliation(canvas, package, arguments, vertices, triangles)
         pictures.append(canvas.picture())
     rows = [np.concatenate(pictures[i:i + 3], 1) for i in (0, 3)]
-    return np.concatenate([without_blank_rows(row) for row in rows])
+    return np.concatenate([without_blank_rows(row) for row in rows]), legend
 
 
 def main():
@@ -203,13 +246,16 @@ def main():
     parser.add_argument("-o", "--out", type=Path, default=Path("."))
     parser.add_argument("--size", type=int, default=500, help="of one view")
     parser.add_argument("--family", choices=["both", "weft", "warp", "none"], default="both")
+    parser.add_argument("--heat", choices=sorted(HEATS))
     parser.add_argument("--stride", type=int, default=1, help="every so many leaves")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     for package in arguments.packages:
-        out = arguments.out / f"{package.resolve().name}.png"
-        write_png(out, draw(package, arguments))
-        print(out)
+        kind = f"-{arguments.heat}" if arguments.heat else ""
+        out = arguments.out / f"{package.resolve().name}{kind}.png"
+        picture, legend = draw(package, arguments)
+        write_png(out, picture)
+        print(out, legend)
 
 
 if __name__ == "__main__":
