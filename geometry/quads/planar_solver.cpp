@@ -85,6 +85,14 @@ PlanarSolver::Bend PlanarSolver::bend_of_cells(const Vertices& vertices) const {
     return bend;
 }
 
+std::size_t PlanarSolver::cells_over(double bound) const {
+    std::size_t over = 0;
+    for (std::size_t cell = 0; cell < mesh_.quads.size(); ++cell) {
+        over += std::abs(bend_of(corners_of(cell, state_.vertices))) > bound ? 1U : 0U;
+    }
+    return over;
+}
+
 void PlanarSolver::raise_pulls(double weight) {
     for (std::size_t cell = 0; cell < mesh_.quads.size(); ++cell) {
         state_.pull[cell] += weight * weight * twist_of(corners_of(cell, state_.vertices));

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -49,6 +50,9 @@ public:
     };
     Bend bend() const { return bend_of_cells(state_.vertices); }
     Bend bend_of_cells(const std::vector<Eigen::Vector3d>& vertices) const;
+
+    // How many cells are more bent than that.
+    std::size_t cells_over(double bound) const;
 
     // Whether no cell of `vertices` is worse folded or squashed than allowed, those of the start
     // that were so from the beginning excepted.

@@ -105,17 +105,18 @@ public:
 
     int iterations() const { return iterations_; }
 
-    // The weight rises to its end, then the multipliers do the rest.
+    // The weight rises to its end, then the multipliers do the rest. Where some cells stay bent:
+    // the net with the fewest.
     Vertices full() {
         Vertices best = mesh_.vertices;
-        double least = solver_.bend().largest;
+        std::size_t least = solver_.cells_over(kMargin * kFullPlanarity);
         double weight = kFirstWeight;
         int waited = 0;
-        while (iterations_ < kMostSteps && least > kMargin * kFullPlanarity) {
+        while (iterations_ < kMostSteps && least > 0) {
             const PlanarSolver::Step step = advance(weight);
-            const double bend = solver_.bend().largest;
-            if (bend < least && solver_.is_sound(solver_.state().vertices)) {
-                least = bend;
+            const std::size_t over = solver_.cells_over(kMargin * kFullPlanarity);
+            if (over < least && solver_.is_sound(solver_.state().vertices)) {
+                least = over;
                 best = solver_.state().vertices;
             }
             const bool steady = step.wanted <= kSteady && step.taken >= kSteadyPart;
@@ -217,29 +218,7 @@ private:
     int iterations_ = 0;
 };
 
-double cell_area(const QuadMesh& mesh, std::size_t cell, const Vertices& vertices) {
-    const auto& [a, b, c, d] = mesh.quads[cell];
-    return 0.5 *
-           (vertices[at(c)] - vertices[at(a)]).cross(vertices[at(d)] - vertices[at(b)]).norm();
-}
-
-// Cells stand for surface as they grow and shrink; together for as much as before.
 void move_vertices(QuadMesh& mesh, Vertices moved, PlanarisationPrice& price) {
-    std::vector<double> regions(mesh.surface_area.size());
-    double before = 0.0;
-    double after = 0.0;
-    for (std::size_t cell = 0; cell < mesh.quads.size(); ++cell) {
-        const double old_area = cell_area(mesh, cell, mesh.vertices);
-        const double ratio = old_area > 0.0 ? cell_area(mesh, cell, moved) / old_area : 1.0;
-        price.cell_area_change_avg_percent +=
-            100.0 * std::abs(ratio - 1.0) / static_cast<double>(mesh.quads.size());
-        regions[cell] = ratio * mesh.surface_area[cell];
-        before += mesh.surface_area[cell];
-        after += regions[cell];
-    }
-    for (std::size_t cell = 0; cell < regions.size() && after > 0.0; ++cell) {
-        mesh.surface_area[cell] = regions[cell] * before / after;
-    }
     for (std::size_t v = 0; v < moved.size(); ++v) {
         const double moved_by = (moved[v] - mesh.vertices[v]).norm();
         price.largest_displacement_mm = std::max(price.largest_displacement_mm, moved_by);
@@ -248,17 +227,44 @@ void move_vertices(QuadMesh& mesh, Vertices moved, PlanarisationPrice& price) {
     mesh.vertices = std::move(moved);
 }
 
-void warn_unless_reached(QuadMesh& mesh) {
+// Cells stand for the surface they lie over, more or less of it by as much as they did before;
+// together for as much.
+void move_regions(QuadMesh& mesh,
+                  const std::vector<CellQuality>& before,
+                  const std::vector<CellQuality>& after,
+                  PlanarisationPrice& price) {
+    double old_sum = 0.0;
+    double new_sum = 0.0;
+    for (std::size_t cell = 0; cell < mesh.quads.size(); ++cell) {
+        const auto ratio = [&](double CellQuality::*area) {
+            const double old_area = before[cell].*area;
+            return old_area > 0.0 ? after[cell].*area / old_area : 1.0;
+        };
+        price.cell_area_change_avg_percent += 100.0 * std::abs(ratio(&CellQuality::area) - 1.0) /
+                                              static_cast<double>(mesh.quads.size());
+        old_sum += mesh.surface_area[cell];
+        mesh.surface_area[cell] *= ratio(&CellQuality::projected_area);
+        new_sum += mesh.surface_area[cell];
+    }
+    for (double& region : mesh.surface_area) {
+        region *= new_sum > 0.0 ? old_sum / new_sum : 1.0;
+    }
+}
+
+void warn_unless_reached(QuadMesh& mesh, const std::vector<CellQuality>& cells) {
     const PlanarisationPrice& price = *mesh.planarisation;
     if (price.reached) {
         return;
     }
+    const auto bent = std::count_if(cells.begin(), cells.end(), [](const CellQuality& cell) {
+        return cell.planarity_percent > 100.0 * kFullPlanarity;
+    });
     mesh.warnings.push_back(fmt::format(
-        "grid.planar: cells are planar to {:.3g} %, not {:.3g} %, and fold on a diagonal; the "
+        "grid.planar: {} of {} cells are not planar to {:.3g} %, but to {:.3g} % at worst; the "
         "average angle deviation rose from {:.2f} to {:.2f} degrees, the average distance to the "
         "surface from {:.3f} to {:.3f} %, vertices moved by up to {:.3g} mm. Use narrower strips, "
         "or \"gentle\"",
-        price.after.planarity_max_percent, 100.0 * kFullPlanarity,
+        bent, cells.size(), 100.0 * kFullPlanarity, price.after.planarity_max_percent,
         price.before.angle_deviation_avg_deg, price.after.angle_deviation_avg_deg,
         price.before.surface_distance_avg_percent, price.after.surface_distance_avg_percent,
         price.largest_displacement_mm));
@@ -275,24 +281,25 @@ void planarise(QuadMesh& mesh,
     }
     const TriangleMesh surface = joined_charts(foliation);
     const ClosestPoint closest(surface);
-    const auto measured = [&] {
-        return figures_of(measure_quality(mesh, closest, context).overall);
-    };
+    QualityReport report = measure_quality(mesh, closest, context);
     PlanarisationPrice price;
     price.wanted = wanted;
-    price.before = measured();
+    price.before = figures_of(report.overall);
     price.after = price.before;
     if (price.before.planarity_max_percent > 100.0 * kFullPlanarity) {
         Planariser planariser(mesh, surface, context);
         Vertices moved = wanted == Planarity::Full ? planariser.full() : planariser.gentle();
         price.iterations = planariser.iterations();
         move_vertices(mesh, std::move(moved), price);
-        price.after = measured();
+        QualityReport after = measure_quality(mesh, closest, context);
+        price.after = figures_of(after.overall);
+        move_regions(mesh, report.cells, after.cells, price);
+        report = std::move(after);
     }
     price.reached =
         wanted == Planarity::Gentle || price.after.planarity_max_percent <= 100.0 * kFullPlanarity;
     mesh.planarisation = price;
-    warn_unless_reached(mesh);
+    warn_unless_reached(mesh, report.cells);
 }
 
 }  // namespace leafcutter::geometry
