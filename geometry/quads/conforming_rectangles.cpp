@@ -4,23 +4,17 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <numbers>
-#include <numeric>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "geometry/error.h"
-#include "geometry/harmonic/bijectivity.h"
-#include "geometry/harmonic/chart_map.h"
-#include "geometry/intrinsic_delaunay.h"
-#include "geometry/laplacian.h"
 #include "geometry/parallel.h"
 #include "geometry/quads/critical_sides.h"
+#include "geometry/quads/flank_vertices.h"
 #include "geometry/quads/patch.h"
 #include "geometry/quads/quad_edges.h"
+#include "geometry/quads/rectangle_charts.h"
 #include "geometry/quads/rectangle_counts.h"
 #include "geometry/quads/rectangle_rows.h"
 #include "geometry/quads/strip_width.h"
@@ -46,104 +40,6 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-[[noreturn]] void fail(const char* what) {
-    throw Error(ErrorKind::SelfCheck, "quads-topology", fmt::format("quads: {}", what));
-}
-
-// What is known before any mesh is made.
-struct Plan {
-    const Foliation& foliation;
-    const SideNetwork& network;
-    const RectangleCounts& counts;
-    const RectangleRows& rows;
-};
-
-// f as it is to be on the flanks.
-std::vector<double> bent_flank(const Plan& plan, const Flank& flank) {
-    std::vector<double> levels;
-    for (std::size_t u = 0; u < flank.uses.size(); ++u) {
-        const CriticalSide& side = plan.network.sides[at(flank.uses[u].side)];
-        const std::size_t last =
-            u + 1 < flank.uses.size() ? flank.uses[u + 1].first : flank.vertices.size();
-        for (std::size_t i = flank.uses[u].first; i < last; ++i) {
-            levels.push_back(plan.rows.bent(side, flank.f[i]));
-        }
-    }
-    return levels;
-}
-
-// The rectangle with f changed by the harmonic function that brings its flanks to their levels. g
-// stays.
-Cylinder bend_chart(const Plan& plan, int cylinder, const Context& context) {
-    const Cylinder& chart = plan.foliation.cylinders[at(cylinder)];
-    const auto& flanks = plan.network.flanks[at(cylinder)];
-    const auto& ends = plan.network.ends[at(cylinder)];
-    ChartMap map = reopen_chart(chart);
-    std::vector<char> held(map.gf.size(), 0);
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held.size()));
-    for (const Flank& flank : flanks) {
-        const std::vector<double> levels = bent_flank(plan, flank);
-        for (std::size_t i = 0; i < levels.size(); ++i) {
-            held[at(flank.vertices[i])] = 1;
-            values[flank.vertices[i]] = levels[i] - map.gf[at(flank.vertices[i])].y();
-        }
-    }
-    for (const std::vector<int>& end : ends) {
-        for (const int v : end) {
-            held[at(v)] = 1;
-            values[v] = 0.0;
-        }
-    }
-    const std::vector<WeightedEdge> edges =
-        cotangent_edges(intrinsic_delaunay(map.mesh, map.edges));
-    const Eigen::VectorXd more = HarmonicSolver(edges, held).solve(std::move(values));
-    for (std::size_t v = 0; v < map.gf.size(); ++v) {
-        map.gf[v].y() += more[static_cast<Eigen::Index>(v)];
-    }
-    make_bijective(map,
-                   {{ends[0], 0, false},
-                    {flanks[SideNetwork::Right].vertices, 1, false},
-                    {ends[1], 0, false},
-                    {flanks[SideNetwork::Left].vertices, 1, false}},
-                   context);
-    Cylinder out = chart;
-    out.corner_gf = finish_cylinder(std::move(map)).corner_gf;
-    return out;
-}
-
-// By how much rows climb from one flank to the other, at most.
-double slant_deg(const Plan& plan, int cylinder) {
-    double least = 0.0;
-    double most = 0.0;
-    for (std::size_t which = 0; which < 2; ++which) {
-        for (const SideUse& use : plan.network.flanks[at(cylinder)][which].uses) {
-            const CriticalSide& side = plan.network.sides[at(use.side)];
-            const double lift = plan.rows.bent(side, side.f.front()) - side.f.front();
-            const double signed_lift = which == SideNetwork::Right ? lift : -lift;
-            least = std::min(least, signed_lift);
-            most = std::max(most, signed_lift);
-        }
-    }
-    const double width = plan.foliation.cylinders[at(cylinder)].width;
-    return std::atan((most - least) / width) * 180.0 / std::numbers::pi;
-}
-
-CylinderGrid grid_of(const Plan& plan, const Cylinder& chart, int cylinder) {
-    const LevelScale f_scale(chart, Axis::F, 0.0);
-    const LevelScale g_scale(chart, Axis::G, 0.0);
-    const int cols = plan.counts.cols[at(cylinder)];
-    std::vector<double> levels = plan.rows.levels(cylinder);
-    const int rows = static_cast<int>(levels.size()) - 1;
-    return {.shape = ChartShape::Rectangle,
-            .rows = rows,
-            .cols = cols,
-            .column_shift = 0,
-            .shear_deg = slant_deg(plan, cylinder),
-            .stretch = f_scale.total_mm() / rows / (g_scale.total_mm() / cols),
-            .f_levels = std::move(levels),
-            .g_levels = g_scale.levels(cols)};
-}
-
 // A rectangle's own grid, before its vertices are shared.
 struct Piece {
     Cylinder chart;
@@ -153,10 +49,10 @@ struct Piece {
     std::vector<SagCell> cells;
 };
 
-Piece make_piece(const Plan& plan, int cylinder, const Context& context) {
+Piece make_piece(const RectanglePlan& plan, int cylinder, const Context& context) {
     Piece piece;
     piece.chart = bend_chart(plan, cylinder, context);
-    piece.grid = grid_of(plan, piece.chart, cylinder);
+    piece.grid = rectangle_grid(plan, piece.chart, cylinder);
     const ChartGrid grid(piece.chart, piece.grid);
     const ChartSampler sampler(piece.chart);
     piece.patch = sample_patch(grid, sampler, context);
@@ -166,81 +62,8 @@ Piece make_piece(const Plan& plan, int cylinder, const Context& context) {
     return piece;
 }
 
-// Numbers of the vertices on flanks.
-class FlankVertices {
-public:
-    explicit FlankVertices(const Plan& plan) : plan_(plan) {
-        first_.assign(plan.network.sides.size(), -1);
-        rows_.assign(plan.network.sides.size(), 0);
-        for (const int c : plan.network.cylinders) {
-            const std::vector<double> levels = plan.rows.levels(c);
-            for (const Flank& flank : plan.network.flanks[at(c)]) {
-                for (const SideUse& use : flank.uses) {
-                    add_side(c, use.side, levels);
-                }
-            }
-        }
-    }
-
-    const std::vector<Vector3d>& positions() const { return positions_; }
-    const std::map<int, int>& stops() const { return stops_; }
-
-    // Of a flank's rows, from the lower loop to the upper.
-    std::vector<int> along(const Flank& flank) const {
-        std::vector<int> vertices;
-        for (const SideUse& use : flank.uses) {
-            const CriticalSide& side = plan_.network.sides[at(use.side)];
-            vertices.push_back(stops_.at(side.points.front()));
-            for (int k = 1; k < rows_[at(use.side)]; ++k) {
-                vertices.push_back(first_[at(use.side)] + k - 1);
-            }
-        }
-        const CriticalSide& last = plan_.network.sides[at(flank.uses.back().side)];
-        vertices.push_back(stops_.at(last.points.back()));
-        return vertices;
-    }
-
-private:
-    void add_side(int cylinder, int number, const std::vector<double>& levels) {
-        const CriticalSide& side = plan_.network.sides[at(number)];
-        const int low = plan_.network.zero_of(side.points.front());
-        const int high = plan_.network.zero_of(side.points.back());
-        const int below = low < 0 ? 0 : plan_.rows.rows_below(cylinder, low);
-        const int rows = plan_.rows.rows_below(cylinder, high) - below;
-        if (first_[at(number)] >= 0) {
-            if (rows != rows_[at(number)]) {
-                fail("the rows of neighbouring rectangles don't match");
-            }
-            return;
-        }
-        if (rows < 1) {
-            fail("two zeros on one side share a row");
-        }
-        add_stop(side.points.front());
-        add_stop(side.points.back());
-        first_[at(number)] = static_cast<int>(positions_.size());
-        rows_[at(number)] = rows;
-        for (int k = 1; k < rows; ++k) {
-            positions_.push_back(
-                point_on(side, plan_.foliation, plan_.rows.unbent(side, levels[at(below + k)])));
-        }
-    }
-
-    void add_stop(int point) {
-        if (stops_.emplace(point, static_cast<int>(positions_.size())).second) {
-            positions_.push_back(plan_.foliation.critical_points[at(point)].position);
-        }
-    }
-
-    const Plan& plan_;
-    std::vector<Vector3d> positions_;
-    std::map<int, int> stops_;  // Critical point to vertex: zeros, and ends of sides at loops.
-    std::vector<int> first_;    // Per side its first inner vertex.
-    std::vector<int> rows_;     // Per side.
-};
-
 // Gives a piece's vertices their numbers in the whole.
-void number_piece(const Plan& plan,
+void number_piece(const RectanglePlan& plan,
                   const FlankVertices& shared,
                   int cylinder,
                   Piece& piece,
@@ -267,7 +90,7 @@ void number_piece(const Plan& plan,
 }
 
 // Edges that only one quad has: at sources, sinks and natural loops.
-int open_edges(const Plan& plan) {
+int open_edges(const RectanglePlan& plan) {
     int edges = 0;
     for (const int c : plan.network.cylinders) {
         edges += 2 * plan.counts.cols[at(c)];
@@ -288,7 +111,7 @@ int open_edges(const Plan& plan) {
 
 // What theory says: every edge between two quads but those on loops, Euler characteristic by the
 // zeros' prongs, four quads round every vertex inside but twice its prongs round a zero.
-void check_whole(const Plan& plan, const FlankVertices& shared, const JoinedMesh& mesh) {
+void check_whole(const RectanglePlan& plan, const FlankVertices& shared, const JoinedMesh& mesh) {
     std::vector<std::array<int, 4>> quads;
     for (const JoinedCylinder& part : mesh.parts) {
         quads.insert(quads.end(), part.quads.begin(), part.quads.end());
@@ -324,7 +147,7 @@ void check_whole(const Plan& plan, const FlankVertices& shared, const JoinedMesh
     }
 }
 
-JoinedMesh build(const Plan& plan, const GridOptions& options, const Context& context) {
+JoinedMesh build(const RectanglePlan& plan, const GridOptions& options, const Context& context) {
     std::vector<Piece> pieces(plan.network.cylinders.size());
     for_each_task(pieces.size(), context, [&](std::size_t i, const Context& own) {
         pieces[i] = make_piece(plan, plan.network.cylinders[i], own);

@@ -13,13 +13,11 @@
 
 #include "geometry/disjoint_sets.h"
 #include "geometry/error.h"
+#include "geometry/quads/band_chart.h"
 #include "geometry/quads/edge_parity.h"
-#include "geometry/quads/integer_program.h"
 
 namespace leafcutter::geometry {
 namespace {
-
-using Eigen::Index;
 
 // Sizes tried: this far to both sides of the wanted number of cells, in so many steps.
 constexpr double kScan = 0.15;
@@ -29,10 +27,6 @@ constexpr int kScanSteps = 24;
 constexpr double kCountTolerance = 0.015;
 constexpr double kCountWeight = 1e3;
 constexpr double kForbidden = 1e9;
-// Two zeros may share a row if they are less than this apart, in rows.
-constexpr double kSharedRow = 0.5;
-constexpr double kFixedWeight = 1e3;
-constexpr std::size_t kMostNodes = 200'000;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -42,40 +36,8 @@ double square(double x) {
     return x * x;
 }
 
-// The rectangles' pieces between two levels of f, side by side.
-Cylinder chart_of_band(const Foliation& foliation, const FormBand& band, double low, double high) {
-    Cylinder out;
-    out.shape = ChartShape::Rectangle;
-    out.height = high - low;
-    for (const int c : band.cylinders) {
-        const Cylinder& from = foliation.cylinders[at(c)];
-        out.width += from.width;
-        for (std::size_t t = 0; t < from.corner_gf.size(); ++t) {
-            std::array<Eigen::Vector2d, 3> gf = from.corner_gf[t];
-            double least = high;
-            double most = low;
-            for (Eigen::Vector2d& corner : gf) {
-                least = std::min(least, corner.y());
-                most = std::max(most, corner.y());
-                corner.y() -= low;
-            }
-            if (least >= high || most <= low) {
-                continue;
-            }
-            const int first = static_cast<int>(out.mesh.positions.size());
-            for (const int v : from.mesh.triangles[t]) {
-                out.mesh.positions.push_back(from.mesh.positions[at(v)]);
-            }
-            out.mesh.triangles.push_back({first, first + 1, first + 2});
-            out.corner_gf.push_back(gf);
-        }
-    }
-    return out;
-}
+}  // namespace
 
-constexpr int kAnyParity = -1;
-
-// The nearest whole number of one parity, in proportion.
 int nearest_count(double ideal, int least, int parity) {
     int best = 0;
     const int low = std::max(least, static_cast<int>(ideal) - 1);
@@ -90,11 +52,9 @@ int nearest_count(double ideal, int least, int parity) {
     return best;
 }
 
-double misfit(int count, double ideal) {
+double count_misfit(int count, double ideal) {
     return square(std::log(count / ideal));
 }
-
-}  // namespace
 
 RectangleCounter::RectangleCounter(const Foliation& foliation,
                                    const SideNetwork& network,
@@ -209,17 +169,22 @@ RectangleCounts RectangleCounter::choose(double cells, const Context& context) c
         Scored found;
         set_cols(found.counts, size);
         set_rows(found.counts, size, context);
-        found.counts.cells = cells_of(found.counts);
-        const double off =
-            fixed_ ? 0.0
-                   : std::max(0.0, std::abs(found.counts.cells / cells - 1.0) - kCountTolerance);
-        found.score = strain(found.counts, size) + kCountWeight * square(off);
+        found.score = score(found.counts, size, cells);
+        if (!fixed_rows_) {
+            adjust_rows(found, size, cells);
+        }
         if (!best || found.score < best->score) {
             best = std::move(found);
         }
     }
+    best->counts.cells = cells_of(best->counts);
     check_fixed(best->counts);
     return std::move(best->counts);
+}
+
+double RectangleCounter::score(const RectangleCounts& counts, double size, double cells) const {
+    const double off = std::abs(cells_of(counts) / cells - 1.0) - kCountTolerance;
+    return strain(counts, size) + (fixed_ ? 0.0 : kCountWeight * square(std::max(0.0, off)));
 }
 
 // Colours alternate if the columns between the flanks of a rectangle are an odd number just where
@@ -252,9 +217,10 @@ void RectangleCounter::set_cols(RectangleCounts& counts, double size) const {
                         {}};
         for (int parity = 0; parity < 2; ++parity) {
             const int count = count_of(c, parity);
-            edge.cost[at(parity)] = count % 2 != parity ? kForbidden
-                                                        : square(width_[at(c)] / size) *
-                                                              misfit(count, width_[at(c)] / size);
+            edge.cost[at(parity)] =
+                count % 2 != parity
+                    ? kForbidden
+                    : square(width_[at(c)] / size) * count_misfit(count, width_[at(c)] / size);
         }
         edges.push_back(edge);
     }
@@ -295,91 +261,6 @@ void RectangleCounter::widen_rings(RectangleCounts& counts, double size) const {
             counts.cols[at(best)] += even ? 2 : 1;
         }
     }
-}
-
-void RectangleCounter::set_rows(RectangleCounts& counts,
-                                double size,
-                                const Context& context) const {
-    if (fixed_rows_) {
-        set_fixed_rows(counts, size, context);
-    } else {
-        set_free_rows(counts, size);
-    }
-}
-
-// As many as make the cells square, and even numbers round handles.
-void RectangleCounter::set_free_rows(RectangleCounts& counts, double size) const {
-    const auto zeros = static_cast<int>(network_.zeros.size());
-    std::vector<double> ideal;
-    std::vector<ParityEdge> edges;
-    for (std::size_t b = 0; b < network_.bands.size(); ++b) {
-        const FormBand& band = network_.bands[b];
-        double cols = 0.0;
-        double wished = 0.0;
-        for (const int c : band.cylinders) {
-            cols += counts.cols[at(c)];
-            wished += width_[at(c)] / size;
-        }
-        ideal.push_back(scale_[b].total_mm() / size * cols / wished);
-        // Each loop is a node of its own.
-        const int loop = zeros + static_cast<int>(b);
-        ParityEdge edge{band.lower < 0 ? loop : band.lower, band.upper < 0 ? loop : band.upper, {}};
-        for (int parity = 0; parity < 2; ++parity) {
-            edge.cost[at(parity)] =
-                cols * ideal[b] * misfit(nearest_count(ideal[b], least_rows_[b], parity), ideal[b]);
-        }
-        if (mergeable_[b] != 0 && ideal[b] < kSharedRow) {
-            edge.cost[0] = 0.0;
-        }
-        edges.push_back(edge);
-    }
-    const std::vector<int> parities =
-        cheapest_parities(zeros + static_cast<int>(network_.bands.size()), edges);
-    for (std::size_t b = 0; b < network_.bands.size(); ++b) {
-        const bool shared = mergeable_[b] != 0 && ideal[b] < kSharedRow;
-        const int parity = wish_.parity == Parity::Even ? parities[b] : kAnyParity;
-        counts.rows.push_back(
-            shared && parity != 1 ? 0 : nearest_count(ideal[b], least_rows_[b], parity));
-    }
-}
-
-// So that the bands that a rectangle passes have its rows together.
-void RectangleCounter::set_fixed_rows(RectangleCounts& counts,
-                                      double size,
-                                      const Context& context) const {
-    const auto bands = static_cast<Index>(network_.bands.size());
-    const auto rectangles = static_cast<Index>(network_.cylinders.size());
-    IntegerConditions conditions;
-    conditions.zero = Eigen::MatrixXi::Zero(0, bands);
-    conditions.bounded = Eigen::MatrixXi::Identity(bands, bands);
-    conditions.lower_bound = Eigen::VectorXi::Ones(bands);
-    Eigen::MatrixXd forms = Eigen::MatrixXd::Zero(bands + rectangles, bands);
-    Eigen::VectorXd targets = Eigen::VectorXd::Zero(bands + rectangles);
-    for (Index b = 0; b < bands; ++b) {
-        const double ideal = scale_[static_cast<std::size_t>(b)].total_mm() / size;
-        forms(b, b) = 1.0 / std::sqrt(std::max(kSharedRow, ideal));
-        targets[b] = ideal * forms(b, b);
-        conditions.lower_bound[b] =
-            mergeable_[static_cast<std::size_t>(b)] != 0 && ideal < kSharedRow
-                ? 0
-                : least_rows_[static_cast<std::size_t>(b)];
-    }
-    for (Index i = 0; i < rectangles; ++i) {
-        const int c = network_.cylinders[static_cast<std::size_t>(i)];
-        if (const std::optional<int>& rows = wish_.counts[at(c)].rows) {
-            for (const int b : network_.band_at[at(c)]) {
-                forms(bands + i, b) = kFixedWeight;
-            }
-            targets[bands + i] = kFixedWeight * *rows;
-        }
-    }
-    const std::optional<IntegerSolution> found =
-        IntegerProgram(forms, std::move(conditions)).solve(targets, kMostNodes, context);
-    if (!found) {
-        throw Error(ErrorKind::BadOption, "counts-do-not-fit",
-                    "grid.rows: no numbers of rows fit together; leave some open");
-    }
-    counts.rows.assign(found->numbers.data(), found->numbers.data() + bands);
 }
 
 double RectangleCounter::cells_of(const RectangleCounts& counts) const {

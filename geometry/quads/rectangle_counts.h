@@ -32,6 +32,14 @@ struct RectangleCounts {
     int tightest = -1;  // The cylinder with most columns for its width.
 };
 
+constexpr int kAnyParity = -1;
+
+// The nearest whole number of one parity, in proportion.
+int nearest_count(double ideal, int least, int parity);
+
+// How far a count is from the ideal one: the square of the difference of logarithms.
+double count_misfit(int count, double ideal);
+
 class RectangleCounter {
 public:
     // Keeps both by reference.
@@ -61,6 +69,8 @@ private:
     void set_rows(RectangleCounts& counts, double size, const Context& context) const;
     void set_free_rows(RectangleCounts& counts, double size) const;
     void set_fixed_rows(RectangleCounts& counts, double size, const Context& context) const;
+    void adjust_rows(Scored& found, double size, double cells) const;
+    double score(const RectangleCounts& counts, double size, double cells) const;
     double cells_of(const RectangleCounts& counts) const;
     double strain(const RectangleCounts& counts, double size) const;
     void check_fixed(const RectangleCounts& counts) const;

@@ -17,22 +17,27 @@ QuadMesh grid_of(const Foliation& foliation, int rows, int cols) {
     return build_quad_mesh(foliation, options);
 }
 
-// Two flat grids of `rows` x `cols` cells side by side in g, joined along the common column of
-// vertices.
-QuadMesh two_joined_cylinders(int rows, int cols) {
+enum class Joined { Across, Along };  // In g, or in f.
+
+// Two flat grids of `rows` x `cols` cells, joined along their common vertices.
+QuadMesh two_joined_cylinders(int rows, int cols, Joined joined = Joined::Across) {
     QuadMesh mesh;
-    const auto vertex = [&](int i, int j) { return i * (2 * cols + 1) + j; };
-    for (int i = 0; i <= rows; ++i) {
-        for (int j = 0; j <= 2 * cols; ++j) {
+    const bool across = joined == Joined::Across;
+    const int width = across ? 2 * cols : cols;
+    const int height = across ? rows : 2 * rows;
+    const auto vertex = [&](int i, int j) { return i * (width + 1) + j; };
+    for (int i = 0; i <= height; ++i) {
+        for (int j = 0; j <= width; ++j) {
             mesh.vertices.emplace_back(j, i, 0);
         }
     }
     for (int cylinder = 0; cylinder < 2; ++cylinder) {
         for (int i = 0; i < rows; ++i) {
             for (int j = 0; j < cols; ++j) {
-                const int k = j + cylinder * cols;
+                const int k = j + (across ? cylinder * cols : 0);
+                const int l = i + (across ? 0 : cylinder * rows);
                 mesh.quads.push_back(
-                    {vertex(i, k), vertex(i, k + 1), vertex(i + 1, k + 1), vertex(i + 1, k)});
+                    {vertex(l, k), vertex(l, k + 1), vertex(l + 1, k + 1), vertex(l + 1, k)});
                 mesh.addresses.push_back({.cylinder = cylinder, .row = i, .col = j});
                 mesh.surface_area.push_back(1.0);
             }
@@ -102,15 +107,25 @@ TEST(Threads, OfATwistedTorusCloseAfterTheGreatestCommonDivisor) {
     expect_partition(mesh, warp);
 }
 
-TEST(Threads, EndAtCriticalLeavesOnlyIfAsked) {
-    const QuadMesh mesh = two_joined_cylinders(2, 3);
-    const auto cut = trace_threads(mesh, Family::Weft, ThreadEnds::AtCriticalLeaves);
-    EXPECT_EQ(cut.size(), 4U);
+TEST(Threads, OfWarpEndAtCriticalLeavesOnlyIfAsked) {
+    const QuadMesh mesh = two_joined_cylinders(2, 3, Joined::Along);
+    const auto cut = trace_threads(mesh, Family::Warp, ThreadEnds::AtCriticalLeaves);
+    ASSERT_EQ(cut.size(), 6U);
+    EXPECT_EQ(cut[0].quads, (std::vector<int>{0, 3}));
+    EXPECT_EQ(cut[0].next, 6);
     expect_partition(mesh, cut);
-    const auto through = trace_threads(mesh, Family::Weft, ThreadEnds::Through);
-    ASSERT_EQ(through.size(), 2U);
-    EXPECT_EQ(through[0].quads, (std::vector<int>{0, 1, 2, 6, 7, 8}));
+    const auto through = trace_threads(mesh, Family::Warp, ThreadEnds::Through);
+    ASSERT_EQ(through.size(), 3U);
+    EXPECT_EQ(through[0].quads, (std::vector<int>{0, 3, 6, 9}));
     expect_partition(mesh, through);
+}
+
+TEST(Threads, OfWeftGoOnAcrossLeavesThatTheyCross) {
+    const QuadMesh mesh = two_joined_cylinders(2, 3);
+    const auto weft = trace_threads(mesh, Family::Weft, ThreadEnds::AtCriticalLeaves);
+    ASSERT_EQ(weft.size(), 2U);
+    EXPECT_EQ(weft[0].quads, (std::vector<int>{0, 1, 2, 6, 7, 8}));
+    expect_partition(mesh, weft);
 }
 
 TEST(Threads, StartAtTheBackEndWhateverQuadComesFirst) {
