@@ -41,7 +41,7 @@ struct Case {
 // The two-holed sample, where leaves are far from lines of curvature.
 Case eight(Junctions junctions) {
     Case made;
-    made.surface = testing::to_mesh(make_sample("eight", 4000));
+    made.surface = testing::to_mesh(make_sample("eight", 2000));
     FoliationOptions options;
     options.mode = FoliationMode::Pants;
     options.puncture = PunctureChoice::None;
@@ -50,7 +50,7 @@ Case eight(Junctions junctions) {
     for (const Cylinder& cylinder : made.foliation.cylinders) {
         area += testing::area_of(cylinder.mesh);
     }
-    made.options.strip_width_mm = std::sqrt(area / 400.0);
+    made.options.strip_width_mm = std::sqrt(area / 300.0);
     made.options.junctions = junctions;
     return made;
 }
