@@ -64,6 +64,7 @@ export const en = {
       punctureNames: { auto: 'Where cells get far too large', none: 'Never' },
       components: 'Separate parts',
       componentNames: { each: 'Weave each', largest: 'Only the largest' },
+      near: 'Singular points near vertices',
     },
     submit: (files: number) => (files === 1 ? 'Weave it' : `Weave ${files} shapes`),
     cancel: 'Cancel',
@@ -72,6 +73,7 @@ export const en = {
       'longest-side': 'The longest side must be a number above 0.',
       'strip-width': 'The strip width must be a number above 0.',
       'strip-too-wide': 'The strips are too wide for this size: at most a third of the longest side.',
+      near: 'Places of singular points are different vertices by their numbers in the file, such as 12, 1895.',
     },
   },
 

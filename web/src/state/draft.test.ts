@@ -63,6 +63,14 @@ test('how pairs of pants are cut is not sent with a mode that has none: the daem
   assert.deepEqual(draftParams({ ...disk, mode: 'auto' })['foliation'], { pants: 'tunnel-loops', function: 'x' });
 });
 
+test('places of singular points are vertices, sent in the modes that have such points', () => {
+  const wanted = { ...kNewDraft, near: ' 12, 1895' } as const;
+  assert.deepEqual(draftParams(wanted)['foliation'], { singularities: [{ near: 12 }, { near: 1895 }] });
+  assert.deepEqual(draftParams({ ...wanted, mode: 'torus' })['foliation'], { mode: 'torus' });
+  for (const typed of ['top', '1.5', '-3', '7 7']) assert.equal(draftFault({ ...kNewDraft, near: typed }), 'near', typed);
+  assert.equal(draftFault({ ...kNewDraft, mode: 'disk', near: 'top' }), null);
+});
+
 test('every repeat is a full matrix in which both families come to the top', () => {
   for (const [pattern, rows] of Object.entries(kRepeats)) {
     const cells = rows.flat();

@@ -44,6 +44,7 @@ export interface Draft {
   readonly sweep: SweepFunction;
   readonly punctures: Punctures;
   readonly components: Components;
+  readonly near: string; // As typed: vertices near which singular points are wanted.
 }
 
 export const kNewDraft: Draft = {
@@ -58,11 +59,17 @@ export const kNewDraft: Draft = {
   sweep: 'auto',
   punctures: 'auto',
   components: 'each',
+  near: '',
 };
 
 // Whether the surface may be cut into pairs of pants in this mode.
 export function usesPants(mode: FoliationMode): boolean {
   return mode === 'auto' || mode === 'pants';
+}
+
+// Whether the leaves can have singular points in this mode.
+export function usesPlaces(mode: FoliationMode): boolean {
+  return mode !== 'disk' && mode !== 'annulus' && mode !== 'torus';
 }
 
 export type DraftAction =
@@ -99,11 +106,19 @@ export function reduceDraft(draft: Draft, action: DraftAction): Draft {
   }
 }
 
-export type DraftFault = 'longest-side' | 'strip-width' | 'strip-too-wide';
+export type DraftFault = 'longest-side' | 'strip-width' | 'strip-too-wide' | 'near';
 
 function positive(typed: string): number | null {
   const value = Number(typed.trim().replace(',', '.'));
   return typed.trim() !== '' && Number.isFinite(value) && value > 0 ? value : null;
+}
+
+// The vertices typed, or null where that is no list of different numbers.
+function verticesOf(typed: string): readonly number[] | null {
+  const words = typed.split(/[\s,;]+/).filter((word) => word !== '');
+  const vertices = words.map(Number);
+  const isList = words.every((word) => /^\d{1,9}$/.test(word)) && new Set(vertices).size === vertices.length;
+  return isList ? vertices : null;
 }
 
 export function draftFault(draft: Draft): DraftFault | null {
@@ -111,18 +126,21 @@ export function draftFault(draft: Draft): DraftFault | null {
   const strip = positive(draft.stripWidthMm);
   if (longest === null) return 'longest-side';
   if (strip === null) return 'strip-width';
-  return strip > longest / 3 ? 'strip-too-wide' : null;
+  if (strip > longest / 3) return 'strip-too-wide';
+  return usesPlaces(draft.mode) && verticesOf(draft.near) === null ? 'near' : null;
 }
 
 // What differs from the daemon's own choice.
-function foliationParams(draft: Draft): Readonly<Record<string, string>> {
+function foliationParams(draft: Draft): Readonly<Record<string, unknown>> {
   const cut = usesPants(draft.mode);
+  const near = usesPlaces(draft.mode) ? (verticesOf(draft.near) ?? []) : [];
   return {
     ...(draft.mode === 'auto' ? {} : { mode: draft.mode }),
     ...(cut && draft.pants !== 'reeb' ? { pants: draft.pants } : {}),
     ...(cut && draft.sweep !== 'auto' ? { function: draft.sweep } : {}),
     ...(draft.punctures === 'auto' ? {} : { punctures: draft.punctures }),
     ...(draft.components === 'each' ? {} : { components: draft.components }),
+    ...(near.length === 0 ? {} : { singularities: near.map((vertex) => ({ near: vertex })) }),
   };
 }
 

@@ -16,6 +16,7 @@ import {
   kRepeats,
   kSweepFunctions,
   usesPants,
+  usesPlaces,
 } from '../state/draft.ts';
 import { attempt, changeDraft, draft, loadMaterials, materials } from '../state/store.ts';
 import { sendDraft } from '../state/uploads.ts';
@@ -143,7 +144,7 @@ function Choices<Value extends string>(props: {
 }
 
 function FoliationChoices() {
-  const { mode, pants, sweep, punctures, components } = draft.value;
+  const { mode, pants, sweep, punctures, components, near } = draft.value;
   const words = t.draft.foliation;
   return (
     <details class="foliation-choices">
@@ -158,6 +159,12 @@ function FoliationChoices() {
         )}
         <Choices label={words.punctures} names={words.punctureNames} all={kPunctures} value={punctures} onChoose={(chosen) => set({ punctures: chosen })} />
         <Choices label={words.components} names={words.componentNames} all={kComponents} value={components} onChoose={(chosen) => set({ components: chosen })} />
+        {usesPlaces(mode) && (
+          <label class="field">
+            <span>{words.near}</span>
+            <input type="text" inputMode="numeric" value={near} onInput={(event) => set({ near: event.currentTarget.value })} />
+          </label>
+        )}
       </div>
     </details>
   );
