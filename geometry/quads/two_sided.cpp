@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kSide = 2;                  // Squares per side of a patch that lead to it.
+constexpr std::size_t kSide = 2;          // Squares per side of a patch that lead to it.
 constexpr int kRefinements = 6;           // A patch's middle lines are about square: enough.
 constexpr double kSampleShare = 0.5;      // Triangles are measured in parts at most so large, in
                                           // edges of a mean cell.
@@ -48,7 +48,7 @@ public:
 
     double from(const Vector3d& point) const {
         const auto square = static_cast<std::size_t>(tree_.query(point).triangle) / 2;
-        constexpr auto kSquares = static_cast<std::size_t>(kSide * kSide);
+        constexpr std::size_t kSquares = kSide * kSide;
         const std::size_t row = square % kSquares / kSide;
         const std::size_t col = square % kSide;
         return distance_to_patch(patch_of(mesh_, square / kSquares), point,
@@ -62,17 +62,17 @@ private:
         for (std::size_t q = 0; q < mesh.quads.size(); ++q) {
             const BilinearPatch patch = patch_of(mesh, q);
             const auto base = static_cast<int>(triangles.positions.size());
-            for (int i = 0; i <= kSide; ++i) {
-                for (int j = 0; j <= kSide; ++j) {
+            for (std::size_t i = 0; i <= kSide; ++i) {
+                for (std::size_t j = 0; j <= kSide; ++j) {
                     triangles.positions.push_back(
                         patch.at(static_cast<double>(j) / kSide, static_cast<double>(i) / kSide));
                 }
             }
-            for (int i = 0; i < kSide; ++i) {
-                for (int j = 0; j < kSide; ++j) {
-                    const int at = base + i * (kSide + 1) + j;
-                    triangles.triangles.push_back({at, at + 1, at + kSide + 2});
-                    triangles.triangles.push_back({at, at + kSide + 2, at + kSide + 1});
+            constexpr auto kLine = static_cast<int>(kSide) + 1;
+            for (int at = base; at + kLine < base + kLine * kLine; ++at) {
+                if ((at - base) % kLine != kLine - 1) {
+                    triangles.triangles.push_back({at, at + 1, at + kLine + 1});
+                    triangles.triangles.push_back({at, at + kLine + 1, at + kLine});
                 }
             }
         }
