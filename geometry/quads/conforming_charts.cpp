@@ -78,6 +78,9 @@ CylinderGrid conforming_grid(const Cylinder& chart, const JunctionCounts& counts
                       .stretch = f_scale.total_mm() / rows / (g_scale.total_mm() / cols),
                       .f_levels = f_scale.levels(rows),
                       .g_levels = {}};
+    if (at(cylinder) < counts.f_levels.size() && !counts.f_levels[at(cylinder)].empty()) {
+        grid.f_levels = counts.f_levels[at(cylinder)];
+    }
     for (int j = 0; j <= cols; ++j) {
         grid.g_levels.push_back(chart.width * j / cols);
     }

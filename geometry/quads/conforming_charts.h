@@ -23,7 +23,7 @@ Cylinder conform_chart(const Foliation& foliation,
                        int cylinder,
                        const Context& context);
 
-// Its grid: even columns, rows evenly wide on the surface.
+// Its grid: even columns, rows evenly wide on the surface or where the counts say.
 CylinderGrid conforming_grid(const Cylinder& chart, const JunctionCounts& counts, int cylinder);
 
 }  // namespace leafcutter::geometry

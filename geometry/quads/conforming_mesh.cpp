@@ -13,6 +13,7 @@
 #include "geometry/parallel.h"
 #include "geometry/quads/conforming_charts.h"
 #include "geometry/quads/critical_arcs.h"
+#include "geometry/quads/graded_rows.h"
 #include "geometry/quads/junction_counts.h"
 #include "geometry/quads/patch.h"
 #include "geometry/quads/quad_edges.h"
@@ -38,6 +39,7 @@ constexpr double kFoldedShare = 0.005;
 constexpr double kFewFolded = 1.0;
 // The period of a plain weave: the least that a surface can carry everywhere.
 constexpr int kColours = 2;
+constexpr int kGradingRounds = 4;
 // Mean square slant and stretch of cells that whole periods of another pattern may cost.
 constexpr double kWorthPeriods = 0.1;
 
@@ -196,6 +198,49 @@ JoinedMesh build(const Foliation& foliation,
     return mesh;
 }
 
+// What a joined mesh is built from.
+struct Source {
+    const Foliation& foliation;
+    const ArcNetwork& network;
+    const GridOptions& options;
+};
+
+// The same with rows graded in the cylinders that come closer to the surface by it, or `even`.
+JoinedMesh with_graded_rows(JoinedMesh even,
+                            const Source& source,
+                            JunctionCounts counts,
+                            const Context& context) {
+    const std::vector<std::vector<double>> rows = graded_rows(even, source.options, context);
+    counts.f_levels.resize(source.foliation.cylinders.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        counts.f_levels[at(even.cylinders[i])] = rows[i];
+    }
+    // What one cylinder's rows are shows in its neighbours too, by the half-sag offset: so again.
+    for (int round = 0; round < kGradingRounds; ++round) {
+        JoinedMesh graded =
+            build(source.foliation, source.network, counts, source.options, context);
+        const CameCloser closer = compare_distances(even, graded, context);
+        bool all = true;
+        for (std::size_t i = 0; i < closer.parts.size(); ++i) {
+            std::vector<double>& levels = counts.f_levels[at(even.cylinders[i])];
+            if (!closer.parts[i] && !levels.empty()) {
+                levels.clear();
+                all = false;
+            }
+        }
+        if (all && closer.whole && graded.folded <= even.folded) {
+            graded.warnings.emplace_back(
+                "grid.spacing: of cylinders that are joined rows alone are graded, as they share "
+                "columns");
+            return graded;
+        }
+    }
+    even.warnings.emplace_back(
+        "grid.spacing: stays uniform where cylinders are joined, as no graded rows come closer to "
+        "the surface");
+    return even;
+}
+
 JunctionWish wish_of(const Foliation& foliation, const GridOptions& options, double area) {
     JunctionWish wish;
     wish.cells = area / (options.strip_width_mm * options.strip_width_mm);
@@ -247,6 +292,10 @@ public:
             JoinedMesh mesh = build(foliation_, arcs, counts, options_, context);
             const double folded = static_cast<double>(mesh.folded);
             if (folded <= std::max(kFewFolded, kFoldedShare * counts.cells)) {
+                if (options_.spacing != Spacing::Uniform) {
+                    mesh = with_graded_rows(std::move(mesh), {foliation_, arcs, options_}, counts,
+                                            context);
+                }
                 return accepted(std::move(mesh), counts, size, tightest);
             }
             if (counter_.has_fixed_counts()) {

@@ -27,6 +27,8 @@ struct JunctionCounts {
                                   // thin ones that are left out: their ends are joined.
     std::vector<int> least_rows;  // Per cylinder: fewer would double edges.
     std::vector<int> cols;
+    // Levels of rows, where a cylinder has other than evenly wide ones.
+    std::vector<std::vector<double>> f_levels;
     std::vector<int> twist;    // Columns by which the upper end's first vertex is aside.
     std::vector<double> slip;  // By how many columns a leaf of F* is off at the other end.
     int cells = 0;

@@ -17,7 +17,7 @@ namespace {
 // Of a row: what is thinner gets none.
 constexpr double kThinnest = 0.25;
 // Strips as wide as asked for in the mean, to 2 %, is more than any other wish.
-constexpr double kCountTolerance = 0.025;
+constexpr double kCountTolerance = 0.015;
 constexpr double kCountWeight = 1e3;
 constexpr double kForbidden = 1e9;
 

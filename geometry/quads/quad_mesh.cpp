@@ -1,5 +1,6 @@
 #include "geometry/quads/quad_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -18,6 +19,7 @@
 #include "geometry/quads/graded_grid.h"
 #include "geometry/quads/grid.h"
 #include "geometry/quads/half_sag.h"
+#include "geometry/quads/mean_widths.h"
 #include "geometry/quads/patch.h"
 #include "geometry/quads/planarise.h"
 #include "geometry/quads/quad_edges.h"
@@ -34,6 +36,8 @@ using Eigen::Vector3d;
 // From a number of cells that would fold over to the next, and how often.
 constexpr double kFiner = 1.5;
 constexpr int kMostSizes = 10;
+// Of the mean width of strips.
+constexpr double kWidthTolerance = 0.02;
 // More cells than asked for by this part is another strip width.
 constexpr double kMostExcess = 1.1;
 // Cells of a surface of one cylinder are not longer than this times their width, if their number is
@@ -178,6 +182,7 @@ void add_fine_enough(QuadMesh& mesh,
         wish.most_stretch = kMostStretch;
     }
     const bool may_refine = !wish.counts.rows || !wish.counts.cols;
+    bool may_grade = options.spacing != Spacing::Uniform;
     for (int tries = 1;; ++tries) {
         CylinderGrid grid = choose_grid(work.chart, wish);
         const double cells = static_cast<double>(grid.rows) * grid.cols;
@@ -185,17 +190,28 @@ void add_fine_enough(QuadMesh& mesh,
             wish.cells = cells;
             continue;
         }
-        if (options.spacing != Spacing::Uniform) {
-            grid = graded(work, grid, options, context);
+        const CylinderGrid even = grid;
+        if (may_grade) {
+            grid = graded(work, even, options, context);
         }
+        const bool stays_even = grid.f_levels == even.f_levels && grid.g_levels == even.g_levels;
         try {
             add_cylinder(mesh, work, grid, options, context);
         } catch (const Error& error) {
+            if (error.code() == "quads-inverted" && !stays_even) {
+                may_grade = false;
+                continue;
+            }
             if (error.code() != "quads-inverted" || !may_refine || tries >= kMostSizes) {
                 throw;
             }
             wish.cells *= kFiner;
             continue;
+        }
+        if (options.spacing != Spacing::Uniform && stays_even) {
+            mesh.warnings.push_back(fmt::format(
+                "cylinder {}: keeps uniform spacing, as none graded comes closer to the surface",
+                work.cylinder));
         }
         if (wish.cells > wished) {
             tell_narrow(mesh, work, cells, options);
@@ -233,13 +249,28 @@ JoinedMesh join_rings(QuadMesh& mesh,
         mesh.vertices = std::move(joined.vertices);
         mesh.charts = foliation.cylinders;
         mesh.warnings = joined.warnings;
-        if (options.spacing != Spacing::Uniform) {
+        if (options.spacing != Spacing::Uniform && foliation.mode == FoliationMode::OneForm) {
             mesh.warnings.emplace_back(
-                "grid.spacing: cylinders that are joined have uniform spacing, as their columns "
-                "are shared");
+                "grid.spacing: rectangles that are joined have uniform spacing, as they share "
+                "rows");
         }
     }
     return joined;
+}
+
+void tell_width(QuadMesh& mesh, const GridOptions& options) {
+    const auto is_fixed = [](const RowsCols& counts) { return counts.rows || counts.cols; };
+    if (mesh.quads.empty() || is_fixed(options.all) ||
+        std::any_of(options.per_cylinder.begin(), options.per_cylinder.end(), is_fixed)) {
+        return;
+    }
+    const double width = mean_widths(mesh).all_mm();
+    if (std::abs(width / options.strip_width_mm - 1.0) > kWidthTolerance) {
+        mesh.warnings.push_back(
+            fmt::format("strips are {:.4g} mm wide on average instead of {:.4g} mm: no whole "
+                        "numbers of rows and columns come closer",
+                        width, options.strip_width_mm));
+    }
 }
 
 }  // namespace
@@ -261,11 +292,15 @@ QuadMesh build_quad_mesh(const Foliation& foliation,
         const Cylinder& chart = foliation.cylinders[i];
         context.check();
         const ChartSampler sampler(chart);
-        const Work work{
-            .cylinder = i, .chart = chart, .sampler = sampler, .area = surface_area(chart.mesh), .alone = foliation.cylinders.size() == 1};
+        const Work work{.cylinder = i,
+                        .chart = chart,
+                        .sampler = sampler,
+                        .area = surface_area(chart.mesh),
+                        .alone = foliation.cylinders.size() == 1};
         context.check();
         add_fine_enough(mesh, work, wish_for(i, work.area, options), options, context);
     }
+    tell_width(mesh, options);
     planarise(mesh, foliation, options.planar, context);
     return mesh;
 }

@@ -21,6 +21,7 @@
 #include "geometry/quads/conforming_charts.h"
 #include "geometry/quads/critical_arcs.h"
 #include "geometry/quads/junction_counts.h"
+#include "geometry/quads/mean_widths.h"
 #include "geometry/quads/quad_edges.h"
 #include "geometry/quads/quad_mesh.h"
 #include "geometry/quads/threads.h"
@@ -147,8 +148,7 @@ void expect_conforming(const Model& model, double cells) {
     EXPECT_EQ(neighbours.boundary_edges == 0, model.loops == 0);
     EXPECT_TRUE(alternates(mesh));
     expect_simple_threads(mesh);
-    const double width = std::sqrt(model.area / static_cast<double>(mesh.quads.size()));
-    EXPECT_NEAR(width / options.strip_width_mm, 1.0, 0.02);
+    EXPECT_NEAR(mean_widths(mesh).all_mm() / options.strip_width_mm, 1.0, 0.02);
     ASSERT_EQ(mesh.charts.size(), mesh.grids.size());
     for (std::size_t c = 0; c < mesh.charts.size(); ++c) {
         EXPECT_EQ(mesh.grids[c].cols % 2, 0);
