@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -228,13 +229,14 @@ void move_vertices(QuadMesh& mesh, Vertices moved, PlanarisationPrice& price) {
 }
 
 // Cells stand for the surface they lie over, more or less of it by as much as they did before;
-// together for as much.
+// together for as much. What no cell lies over any more is on account of those that left it.
 void move_regions(QuadMesh& mesh,
                   const std::vector<CellQuality>& before,
                   const std::vector<CellQuality>& after,
                   PlanarisationPrice& price) {
-    double old_sum = 0.0;
-    double new_sum = 0.0;
+    const std::vector<double> old_regions = mesh.surface_area;
+    double missing = 0.0;
+    double shrunk = 0.0;
     for (std::size_t cell = 0; cell < mesh.quads.size(); ++cell) {
         const auto ratio = [&](double CellQuality::*area) {
             const double old_area = before[cell].*area;
@@ -242,12 +244,18 @@ void move_regions(QuadMesh& mesh,
         };
         price.cell_area_change_avg_percent += 100.0 * std::abs(ratio(&CellQuality::area) - 1.0) /
                                               static_cast<double>(mesh.quads.size());
-        old_sum += mesh.surface_area[cell];
         mesh.surface_area[cell] *= ratio(&CellQuality::projected_area);
-        new_sum += mesh.surface_area[cell];
+        missing += old_regions[cell] - mesh.surface_area[cell];
+        shrunk += std::max(old_regions[cell] - mesh.surface_area[cell], 0.0);
     }
-    for (double& region : mesh.surface_area) {
-        region *= new_sum > 0.0 ? old_sum / new_sum : 1.0;
+    const double sum = std::accumulate(old_regions.begin(), old_regions.end(), 0.0);
+    for (std::size_t cell = 0; cell < old_regions.size(); ++cell) {
+        double& region = mesh.surface_area[cell];
+        if (missing > 0.0) {
+            region += missing / shrunk * std::max(old_regions[cell] - region, 0.0);
+        } else {
+            region *= sum > 0.0 ? sum / (sum - missing) : 1.0;
+        }
     }
 }
 
