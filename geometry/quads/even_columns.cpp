@@ -17,7 +17,7 @@ namespace leafcutter::geometry {
 namespace {
 
 // How far from even in g to even on the surface: ever further, until angles suffer.
-constexpr std::array<double, 7> kShares{0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0};
+constexpr std::array<double, 9> kShares{0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.6, 0.8, 1.0};
 constexpr int kLevels = 256;
 // The mean angle may be worse by this part.
 constexpr double kMostWorse = 0.03;
