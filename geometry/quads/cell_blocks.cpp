@@ -93,12 +93,14 @@ void CellBlocks::add_vertex(std::size_t vertex, const Eigen::Matrix3d& block) {
 }
 
 void CellBlocks::add_cell(std::size_t cell, const Eigen::Matrix<double, 12, 12>& block) {
-    for (int row = 0; row < 4; ++row) {
-        for (int column = 0; column < 4; ++column) {
-            const Place& place = cells_[cell][at(4 * row + column)];
+    for (std::size_t row = 0; row < 4; ++row) {
+        for (std::size_t column = 0; column < 4; ++column) {
+            const Place& place = cells_[cell][4 * row + column];
             if (place.first >= 0) {
-                add(place, block.block<3, 3>(3 * row, 3 * column),
-                    quads_[cell][at(row)] == quads_[cell][at(column)]);
+                add(place,
+                    block.block<3, 3>(static_cast<Eigen::Index>(3 * row),
+                                      static_cast<Eigen::Index>(3 * column)),
+                    quads_[cell][row] == quads_[cell][column]);
             }
         }
     }

@@ -107,8 +107,12 @@ void PlanarAnchors::find_boundary(const QuadMesh& mesh) {
                 continue;
             }
             // Where boundaries touch, the vertex stays.
-            corner_[at(from)] |= static_cast<char>(sides_[at(from)].after >= 0);
-            corner_[at(to)] |= static_cast<char>(sides_[at(to)].before >= 0);
+            if (sides_[at(from)].after >= 0) {
+                corner_[at(from)] = 1;
+            }
+            if (sides_[at(to)].before >= 0) {
+                corner_[at(to)] = 1;
+            }
             sides_[at(from)].after = to;
             sides_[at(to)].before = from;
         }
@@ -116,13 +120,15 @@ void PlanarAnchors::find_boundary(const QuadMesh& mesh) {
     for (std::size_t v = 0; v < sides_.size(); ++v) {
         const auto [before, after] = sides_[v];
         if (before < 0 || after < 0) {
-            corner_[v] |= static_cast<char>(before >= 0 || after >= 0);
+            corner_[v] = static_cast<char>(before >= 0 || after >= 0);
             continue;
         }
         const Vector3d in = origin_[v] - origin_[at(before)];
         const Vector3d out = origin_[at(after)] - origin_[v];
         const bool turns = in.dot(out) < kCornerCosine * in.norm() * out.norm();
-        corner_[v] |= static_cast<char>(turns || cells[v] == 1);
+        if (turns || cells[v] == 1) {
+            corner_[v] = 1;
+        }
         segment_[v] = static_cast<int>(v);
     }
 }

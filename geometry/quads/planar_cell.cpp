@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -33,7 +34,7 @@ constexpr double kSmallestStretch = 0.02;
 constexpr double kThinnest = 0.02;
 
 // Sides belong to two cells, and count half in each.
-const double kHalf = std::sqrt(0.5);
+constexpr double kHalf = 1.0 / std::numbers::sqrt2;
 
 constexpr int kAngleRows = 0;
 constexpr int kLengthRows = 4;
@@ -41,7 +42,7 @@ constexpr int kFairRows = 8;
 constexpr int kPlanarRow = 20;
 
 void add_gradient(CellJacobian& jacobian, int row, std::size_t corner, const Vector3d& gradient) {
-    jacobian.block<1, 3>(row, 3 * static_cast<int>(corner)) += gradient.transpose();
+    jacobian.block<1, 3>(row, static_cast<Eigen::Index>(3 * corner)) += gradient.transpose();
 }
 
 void angle_row(const CellCorners& at,
@@ -111,8 +112,10 @@ void fair_rows(const CellCorners& start,
         const std::size_t next = (side + 1) % 4;
         residual.segment<3>(row) = factor * ((at[next] - start[next]) - (at[side] - start[side]));
         if (jacobian != nullptr) {
-            jacobian->block<3, 3>(row, 3 * static_cast<int>(next)).diagonal().array() += factor;
-            jacobian->block<3, 3>(row, 3 * static_cast<int>(side)).diagonal().array() -= factor;
+            jacobian->block<3, 3>(row, static_cast<Eigen::Index>(3 * next)).diagonal().array() +=
+                factor;
+            jacobian->block<3, 3>(row, static_cast<Eigen::Index>(3 * side)).diagonal().array() -=
+                factor;
         }
     }
 }

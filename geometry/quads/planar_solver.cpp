@@ -125,7 +125,7 @@ void PlanarSolver::assemble(double weight) {
     for (std::size_t cell = 0; cell < parts_.size(); ++cell) {
         blocks_.add_cell(cell, parts_[cell].block);
         for (std::size_t i = 0; i < 4; ++i) {
-            gradient_.segment<3>(3 * mesh_.quads[cell][i]) +=
+            gradient_.segment<3>(static_cast<Eigen::Index>(3 * at(mesh_.quads[cell][i]))) +=
                 parts_[cell].gradient.segment<3>(static_cast<Eigen::Index>(3 * i));
         }
     }
@@ -224,6 +224,35 @@ bool PlanarSolver::is_sound(const Vertices& vertices) const {
     return true;
 }
 
+// Shortens the steps around cells that they would spoil. Whether there were any.
+bool PlanarSolver::shorten_spoiling(Vertices& steps, int attempt) {
+    Vertices moved(steps.size());
+    for (std::size_t v = 0; v < steps.size(); ++v) {
+        moved[v] = state_.vertices[v] + steps[v];
+    }
+    const std::vector<char> cells = spoiled(moved);
+    std::vector<char> shorten(steps.size(), 0);
+    bool any = false;
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+        if (cells[cell] == 0) {
+            continue;
+        }
+        any = true;
+        for (const int vertex : mesh_.quads[cell]) {
+            shorten[at(vertex)] = 1;
+        }
+        if (attempt == 0) {
+            damp_cell(cell);
+        }
+    }
+    for (std::size_t v = 0; v < steps.size(); ++v) {
+        if (shorten[v] != 0) {
+            steps[v] *= attempt < kLocalHalvings ? 0.5 : 0.0;
+        }
+    }
+    return any;
+}
+
 // The steps of Gauss-Newton, cut to length one by one, and shorter around cells they would spoil.
 Vertices PlanarSolver::safe_steps() {
     if (factor_) {
@@ -243,32 +272,9 @@ Vertices PlanarSolver::safe_steps() {
             std::min(kLongestStep, kLongestOfSide * anchors_.shortest_side(v) / anchors_.size(v));
         steps[v] *= std::min(1.0, allowed / std::max(length, 1e-300));
     }
-    Vertices moved(steps.size());
-    for (int attempt = 0; attempt < kLocalAttempts; ++attempt) {
-        for (std::size_t v = 0; v < steps.size(); ++v) {
-            moved[v] = state_.vertices[v] + steps[v];
-        }
-        const std::vector<char> cells = spoiled(moved);
-        std::vector<char> shorten(steps.size(), 0);
-        for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-            if (cells[cell] == 0) {
-                continue;
-            }
-            for (const int vertex : mesh_.quads[cell]) {
-                shorten[at(vertex)] = 1;
-            }
-            if (attempt == 0) {
-                damp_cell(cell);
-            }
-        }
-        if (std::none_of(shorten.begin(), shorten.end(), [](char own) { return own != 0; })) {
-            break;
-        }
-        for (std::size_t v = 0; v < steps.size(); ++v) {
-            if (shorten[v] != 0) {
-                steps[v] *= attempt < kLocalHalvings ? 0.5 : 0.0;
-            }
-        }
+    int attempt = 0;
+    while (attempt < kLocalAttempts && shorten_spoiling(steps, attempt)) {
+        ++attempt;
     }
     return steps;
 }

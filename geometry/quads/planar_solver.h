@@ -68,6 +68,7 @@ private:
     CellCorners corners_of(std::size_t cell, const std::vector<Eigen::Vector3d>& vertices) const;
     void assemble(double weight);
     std::vector<Eigen::Vector3d> safe_steps();
+    bool shorten_spoiling(std::vector<Eigen::Vector3d>& steps, int attempt);
     std::vector<char> spoiled(const std::vector<Eigen::Vector3d>& vertices) const;
     std::vector<double> cell_energies(const std::vector<Eigen::Vector3d>& vertices,
                                       double weight) const;

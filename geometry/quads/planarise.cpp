@@ -228,8 +228,9 @@ void move_vertices(QuadMesh& mesh, Vertices moved, PlanarisationPrice& price) {
     mesh.vertices = std::move(moved);
 }
 
-// Cells stand for the surface they lie over, more or less of it by as much as they did before;
-// together for as much. What no cell lies over any more is on account of those that left it.
+// Cells stand for the surface they lie over, and for the limbs they capped before unless they grew
+// into them; together for as much as before. What no cell lies over any more is on account of those
+// that left it.
 void move_regions(QuadMesh& mesh,
                   const std::vector<CellQuality>& before,
                   const std::vector<CellQuality>& after,
@@ -244,9 +245,11 @@ void move_regions(QuadMesh& mesh,
         };
         price.cell_area_change_avg_percent += 100.0 * std::abs(ratio(&CellQuality::area) - 1.0) /
                                               static_cast<double>(mesh.quads.size());
-        mesh.surface_area[cell] *= ratio(&CellQuality::projected_area);
-        missing += old_regions[cell] - mesh.surface_area[cell];
-        shrunk += std::max(old_regions[cell] - mesh.surface_area[cell], 0.0);
+        const double part = ratio(&CellQuality::projected_area);
+        double& region = mesh.surface_area[cell];
+        region = part < 1.0 ? part * region : std::max(region, after[cell].projected_area);
+        missing += old_regions[cell] - region;
+        shrunk += std::max(old_regions[cell] - region, 0.0);
     }
     const double sum = std::accumulate(old_regions.begin(), old_regions.end(), 0.0);
     for (std::size_t cell = 0; cell < old_regions.size(); ++cell) {
