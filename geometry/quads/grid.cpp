@@ -279,6 +279,20 @@ std::vector<double> folded_levels(const std::vector<double>& levels) {
     return folded;
 }
 
+namespace {
+
+double leaf_height(const Cylinder& chart, const LevelScale& g_scale) {
+    return may_shift(chart) ? g_scale.mean_even_leaf_mm() : g_scale.mean_leaf_mm();
+}
+
+}  // namespace
+
+double cells_per_square(const Cylinder& chart) {
+    const double own_slant = is_slanted(chart.shape) ? chart.shear / chart.height : 0.0;
+    const double height = leaf_height(chart, LevelScale(chart, Axis::G, own_slant));
+    return surface_area(chart.mesh) / (height * LevelScale(chart, Axis::F, 0.0).mean_leaf_mm());
+}
+
 CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
     const Least least = least_counts(chart.shape, wish.parity);
     check_fixed(wish.counts, least, chart.shape, wish.path);
@@ -286,7 +300,7 @@ CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish) {
     const double own_slant = is_slanted(chart.shape) ? chart.shear / chart.height : 0.0;
     const LevelScale g_scale(chart, Axis::G, own_slant);
     // Leaves of F* are as long as the chart is high, in the mean, those of F as it is wide.
-    const double height = may_shift(chart) ? g_scale.mean_even_leaf_mm() : g_scale.mean_leaf_mm();
+    const double height = leaf_height(chart, g_scale);
     const double width = f_scale.mean_leaf_mm();
     const double aspect = height / width;
     GridWish even = wish;

@@ -40,6 +40,10 @@ struct GridWish {
 // that would do.
 CylinderGrid choose_grid(const Cylinder& chart, const GridWish& wish);
 
+// How many more cells than area / width² a chart has with strips of that width in the mean, where
+// they are wide and narrow by turns.
+double cells_per_square(const Cylinder& chart);
+
 // Levels of columns made symmetric about the fold at level 0, and so about the one half round.
 std::vector<double> folded_levels(const std::vector<double>& levels);
 

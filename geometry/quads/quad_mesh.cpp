@@ -177,6 +177,7 @@ void add_fine_enough(QuadMesh& mesh,
                      const GridOptions& options,
                      const Context& context) {
     const double wished = wish.cells;
+    const double share = cells_per_square(work.chart);
     const bool free = !wish.counts.rows && !wish.counts.cols;
     if (work.alone) {
         wish.most_stretch = kMostStretch;
@@ -186,8 +187,8 @@ void add_fine_enough(QuadMesh& mesh,
     for (int tries = 1;; ++tries) {
         CylinderGrid grid = choose_grid(work.chart, wish);
         const double cells = static_cast<double>(grid.rows) * grid.cols;
-        if (free && cells > kMostExcess * wish.cells && tries < kMostSizes) {
-            wish.cells = cells;
+        if (free && cells > kMostExcess * share * wish.cells && tries < kMostSizes) {
+            wish.cells = cells / share;
             continue;
         }
         const CylinderGrid even = grid;
@@ -214,7 +215,7 @@ void add_fine_enough(QuadMesh& mesh,
                 work.cylinder));
         }
         if (wish.cells > wished) {
-            tell_narrow(mesh, work, cells, options);
+            tell_narrow(mesh, work, wish.cells, options);
         }
         return;
     }
