@@ -1,4 +1,4 @@
-// How wide strips are on average, as they will be cut.
+// How wide strips are on average.
 
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace leafcutter::geometry {
 
-// Of each family the area of its strips over their length along the middle: what times the length
-// of all strips gives the area of the weave. Strips of weft are rows, those of warp columns.
+// Of each family the area of the surface over the length of all its strips along the middle. Strips
+// of weft are rows, those of warp columns.
 struct MeanWidths {
     double weft_mm = 0.0;
     double warp_mm = 0.0;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/closest_point.h"
+#include "geometry/quads/mean_widths.h"
 #include "geometry/quads/quad_edges.h"
 #include "geometry/quads/quad_mesh.h"
 #include "geometry/quads/quality.h"
@@ -363,6 +364,85 @@ TEST(QuadMesh, KeepsEvenLevelsWhereNothingBends) {
     for (std::size_t i = 0; i < 8; ++i) {
         EXPECT_NEAR(mesh.grids[0].g_levels[i], 10.0 * static_cast<double>(i), 1e-9);
     }
+}
+
+// Bumps of several sizes on a sheet: some rows and columns bend much more than others.
+Foliation bumpy_sheet() {
+    return testing::one_cylinder(testing::make_chart(
+        {.shape = ChartShape::Rectangle,
+         .across = 96,
+         .along = 72,
+         .width = 160.0,
+         .height = 120.0,
+         .position = [](double u, double v) {
+             const auto bump = [&](double x, double y, double size) {
+                 const double far = std::hypot(160.0 * u - x, 120.0 * v - y) / size;
+                 return size * std::exp(-far * far);
+             };
+             return Vector3d(160.0 * u, 120.0 * v, bump(35.0, 80.0, 8.0) + bump(110.0, 35.0, 14.0));
+         }}));
+}
+
+TEST(QuadMesh, ComesCloserByGradedStripsAtTheSameCounts) {
+    const Foliation sheet = bumpy_sheet();
+    const ClosestPoint surface(sheet.cylinders[0].mesh);
+    const auto distance = [&](const QuadMesh& mesh) {
+        return measure_quality(mesh, surface).overall.surface_distance_percent;
+    };
+    const MaxAvg even = distance(build_quad_mesh(sheet, counts(18, 24)));
+    std::vector<double> largest;
+    for (const Spacing spacing : {Spacing::Curvature, Spacing::CurvatureArea}) {
+        GridOptions options = counts(18, 24);
+        options.spacing = spacing;
+        const QuadMesh mesh = build_quad_mesh(sheet, options);
+        const CylinderGrid& grid = mesh.grids[0];
+        EXPECT_EQ(grid.rows, 18);
+        EXPECT_EQ(grid.cols, 24);
+        for (const auto* levels : {&grid.f_levels, &grid.g_levels}) {
+            for (std::size_t i = 0; i + 1 < levels->size(); ++i) {
+                EXPECT_LT((*levels)[i], (*levels)[i + 1]);
+            }
+        }
+        EXPECT_EQ(grid.f_levels.back(), 120.0);
+        EXPECT_EQ(grid.g_levels.back(), 160.0);
+        largest.push_back(distance(mesh).max);
+        EXPECT_LT(distance(mesh).avg, 1.02 * even.avg);
+    }
+    EXPECT_LT(largest[0], 0.9 * even.max);
+    EXPECT_LT(largest[1], 0.55 * even.max);
+}
+
+TEST(QuadMesh, GradesTheSameOnAnyNumberOfThreads) {
+    const Foliation sheet = bumpy_sheet();
+    GridOptions options = counts(9, 12);
+    options.spacing = Spacing::CurvatureArea;
+    Context several;
+    several.threads = 3;
+    const QuadMesh one = build_quad_mesh(sheet, options);
+    const QuadMesh three = build_quad_mesh(sheet, options, several);
+    EXPECT_EQ(one.grids[0].f_levels, three.grids[0].f_levels);
+    EXPECT_EQ(one.grids[0].g_levels, three.grids[0].g_levels);
+}
+
+TEST(QuadMesh, KeepsTheMeanWidthOfStrips) {
+    for (const Foliation& foliation :
+         {testing::flat_rectangle(210.0, 300.0), squeezed_square(), bumpy_sheet(),
+          testing::round_torus(100.0, 25.0), testing::slanted_torus(157.0, 630.0, 50.0)}) {
+        for (const double width : {3.0, 4.0, 5.5}) {
+            const MeanWidths found = mean_widths(build_quad_mesh(foliation, width_mm(width)));
+            EXPECT_NEAR(found.all_mm(), width, 0.02 * width);
+        }
+    }
+}
+
+TEST(QuadMesh, SaysWhatWidthStripsHaveInstead) {
+    // Four columns at least close a ring, so they can't be as wide as this.
+    const QuadMesh mesh = build_quad_mesh(testing::round_cylinder(5.0, 300.0), width_mm(40.0));
+    const double width = mean_widths(mesh).all_mm();
+    EXPECT_LT(width, 0.98 * 40.0);
+    EXPECT_TRUE(std::any_of(mesh.warnings.begin(), mesh.warnings.end(), [](const auto& warning) {
+        return warning.find("on average instead of 40 mm") != std::string::npos;
+    }));
 }
 
 TEST(QuadMesh, StopsWhenAsked) {
