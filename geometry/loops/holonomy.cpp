@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <random>
+#include <ranges>
 #include <utility>
 
 #include "geometry/error.h"
@@ -160,8 +161,8 @@ public:
             close(matrices, draw);
         }
         // Farthest triangles first: two sides are known, the third follows.
-        for (auto t = order_.rbegin(); t != order_.rend(); ++t) {
-            const int h = parent_[at(*t)];
+        for (const int t : std::views::reverse(order_)) {
+            const int h = parent_[at(t)];
             if (h >= 0) {
                 set(matrices, h,
                     (along(matrices, HalfEdges::next(h)) * along(matrices, HalfEdges::previous(h)))
@@ -222,8 +223,10 @@ private:
             order_.push_back(0);
             seen[0] = 1;
         }
-        for (std::size_t i = 0; i < order_.size(); ++i) {
-            for (int h = 3 * order_[i]; h < 3 * order_[i] + 3; ++h) {
+        std::size_t done = 0;
+        while (done < order_.size()) {
+            const int t = order_[done++];
+            for (int h = 3 * t; h < 3 * t + 3; ++h) {
                 const int twin = edges_.twin_of(h);
                 if (twin >= 0 && kind_[at(edge_of(h))] == Kind::Free) {
                     enter(twin);
