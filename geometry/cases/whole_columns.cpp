@@ -43,7 +43,8 @@ std::optional<JunctionCounts> counts_of(const Foliation& foliation,
     wish.parity = aim.even_columns ? Parity::Even : Parity::Any;
     wish.counts.resize(foliation.cylinders.size());
     wish.paths.assign(foliation.cylinders.size(), "grid");
-    return JunctionCounter(foliation, network, std::move(wish)).choose(aim.cells, context);
+    const JunctionCounter counter(foliation, network, std::move(wish));
+    return counter.choose(counter.wanted_cells(), context);
 }
 
 std::size_t triangles_of(const Foliation& foliation) {
