@@ -8,6 +8,8 @@
 
 #include <Eigen/Dense>
 
+#include "geometry/error.h"
+
 namespace leafcutter::geometry {
 namespace {
 
@@ -18,6 +20,7 @@ using Eigen::VectorXd;
 using Eigen::VectorXi;
 
 constexpr double kLovasz = 0.99;
+constexpr int kMostSteps = 50'000;
 constexpr int kMostSweeps = 3000;
 constexpr double kSettled = 1e-12;
 // Starts: the real solution, ever longer, until its nearest lattice point is allowed.
@@ -81,8 +84,10 @@ public:
     Reducer(const MatrixXd& forms, MatrixXi& basis)
         : basis_(basis), vectors_(forms * basis.cast<double>()), straight_(vectors_) {}
 
+    // Any basis will do, a reduced one sooner: so a limit costs nothing but time.
     void run() {
-        for (Index k = 1; k < basis_.cols();) {
+        int steps = 0;
+        for (Index k = 1; k < basis_.cols() && steps < kMostSteps; ++steps) {
             shorten(k);
             straighten(k);
             const double along =
@@ -205,6 +210,10 @@ private:
 
 IntegerProgram::IntegerProgram(const MatrixXd& forms, IntegerConditions conditions)
     : conditions_(std::move(conditions)), basis_(integer_kernel(conditions_.zero, forms.cols())) {
+    if (!forms.allFinite()) {
+        throw Error(ErrorKind::SelfCheck, "integer-program",
+                    "quads: lengths of critical arcs are not finite");
+    }
     Reducer(forms, basis_).run();
     forms_ = forms * basis_.cast<double>();
     const Index size = basis_.cols();

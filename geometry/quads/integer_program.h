@@ -34,7 +34,7 @@ struct IntegerSolution {
 class IntegerProgram {
 public:
     // Costs are |forms numbers - targets|²; `forms` is one-to-one on the numbers that `conditions`
-    // allow. Its reduction serves for any targets.
+    // allow. Its reduction serves for any targets. Throws Error(SelfCheck) unless they are finite.
     IntegerProgram(const Eigen::MatrixXd& forms, IntegerConditions conditions);
 
     // The cheapest numbers, looking at `most_nodes` at most; none if no numbers keep the
