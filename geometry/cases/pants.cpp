@@ -21,6 +21,7 @@
 #include "geometry/pants/slice.h"
 #include "geometry/pants/split_long_edges.h"
 #include "geometry/parallel.h"
+#include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
 namespace {
@@ -84,15 +85,6 @@ Sliced split_and_slice(TriangleMesh& mesh, GraphMap& map, const Context& context
                 "harmonic map: the mesh is too coarse near the critical graph; refine it");
 }
 
-double area_of(const TriangleMesh& mesh) {
-    double area = 0.0;
-    for (const auto& t : mesh.triangles) {
-        const Eigen::Vector3d& a = mesh.positions[at(t[0])];
-        area += 0.5 * (mesh.positions[at(t[1])] - a).cross(mesh.positions[at(t[2])] - a).norm();
-    }
-    return area;
-}
-
 [[noreturn]] void fail(const char* code, const std::string& what) {
     throw Error(ErrorKind::SelfCheck, code, what);
 }
@@ -111,9 +103,9 @@ void check_pieces(const Sliced& sliced, const TriangleMesh& mesh, int euler, int
     }
     double area = 0.0;
     for (const Piece& piece : sliced.pieces) {
-        area += area_of(piece.mesh);
+        area += surface_area(piece.mesh);
     }
-    const double whole = area_of(mesh);
+    const double whole = surface_area(mesh);
     if (!(std::abs(area - whole) <= kAreaTolerance * whole)) {
         fail("area-lost", fmt::format("slicing: the cylinders have {:.6g} of the surface's area "
                                       "{:.6g}",
@@ -186,7 +178,7 @@ void check_energy(const Foliation& foliation, std::vector<std::string>& warnings
 // anything is mapped to is worth a word.
 void report_squeezed(const Sliced& sliced, double whole, std::vector<std::string>& warnings) {
     for (std::size_t e = 0; e < sliced.pieces.size(); ++e) {
-        const double share = area_of(sliced.pieces[e].mesh) / whole;
+        const double share = surface_area(sliced.pieces[e].mesh) / whole;
         if (share < kSqueezedShare) {
             warnings.push_back(
                 fmt::format("cylinder {} has nearly collapsed: it holds {:.2g} % of "
@@ -206,7 +198,7 @@ Foliation assemble(Solved solved, const FoliationOptions& options, const Context
     if (!solved.report.converged) {
         foliation.warnings.emplace_back("the harmonic map stopped before it was quite still");
     }
-    const double whole = area_of(solved.mesh);
+    const double whole = surface_area(solved.mesh);
     report_squeezed(solved.sliced, whole, foliation.warnings);
     for (const Eigen::Vector3d& position : solved.sliced.three_prongs) {
         foliation.singularities.push_back({position, 3});
@@ -224,7 +216,7 @@ Foliation assemble(Solved solved, const FoliationOptions& options, const Context
     std::vector<Foliation> rings(pieces.size());
     for_each_task(order.size(), context, [&](std::size_t i, const Context& own) {
         const std::size_t e = order[i];
-        const double share = area_of(pieces[e].mesh) / whole;
+        const double share = surface_area(pieces[e].mesh) / whole;
         rings[e] = chart_of(pieces[e], share, foliation.graph.edges[e].weight, options, own);
     });
     for (std::size_t e = 0; e < rings.size(); ++e) {

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <limits>
-#include <queue>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "geometry/loops/edge_paths.h"
 #include "geometry/pants/decomposition.h"
 #include "geometry/parallel.h"
 
@@ -95,34 +94,6 @@ Lines lines_of(const Hierarchy& hierarchy, const Hierarchy::Level& level) {
                              : trace_cut(level.flipped.rings, level.surface.line_of_vertex, start);
     }
     return lines;
-}
-
-// Lengths of shortest edge paths from `sources`.
-std::vector<double> path_lengths(const Hierarchy::Level& level, const std::vector<int>& sources) {
-    const std::vector<Eigen::Vector3d>& positions = level.surface.mesh.positions;
-    std::vector<double> length(positions.size(), std::numeric_limits<double>::infinity());
-    using Entry = std::pair<double, int>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    for (const int v : sources) {
-        length[at(v)] = 0.0;
-        queue.emplace(0.0, v);
-    }
-    while (!queue.empty()) {
-        const auto [d, v] = queue.top();
-        queue.pop();
-        if (d > length[at(v)]) {
-            continue;
-        }
-        for (int k = level.rings.begin[at(v)]; k < level.rings.begin[at(v) + 1]; ++k) {
-            const int w = level.rings.slots[at(k)].neighbour;
-            const double through = d + (positions[at(v)] - positions[at(w)]).norm();
-            if (through < length[at(w)]) {
-                length[at(w)] = through;
-                queue.emplace(through, w);
-            }
-        }
-    }
-    return length;
 }
 
 void set_weights(GraphMap& map, const std::vector<double>& weights) {
@@ -362,7 +333,8 @@ std::vector<CoarseMap> solve_coarsest(const Hierarchy& hierarchy,
     const Hierarchy::Level& level = hierarchy.levels.back();
     Lines lines = lines_of(hierarchy, level);
     const std::vector<double> distance =
-        path_lengths(level, lines.boundary.empty() ? std::vector<int>{0} : lines.boundary.front());
+        path_lengths(level.rings, level.surface.mesh.positions,
+                     lines.boundary.empty() ? std::vector<int>{0} : lines.boundary.front());
     const std::vector<PantsCandidate> candidates =
         candidates_of(level, std::move(lines), options, context);
     std::vector<std::vector<CoarseMap>> of_candidate(candidates.size());

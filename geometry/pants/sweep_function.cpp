@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <queue>
 #include <random>
 #include <utility>
 
 #include "geometry/laplacian.h"
+#include "geometry/loops/edge_paths.h"
 
 namespace leafcutter::geometry {
 namespace {
@@ -21,34 +19,6 @@ constexpr double kTilt = 0.02;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
-}
-
-// Lengths of shortest edge paths from `sources`.
-std::vector<double> path_lengths(const DecompositionSurface& surface,
-                                 std::span<const int> sources) {
-    std::vector<double> length(surface.positions.size(), std::numeric_limits<double>::infinity());
-    using Entry = std::pair<double, int>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    for (const int v : sources) {
-        length[at(v)] = 0.0;
-        queue.emplace(0.0, v);
-    }
-    while (!queue.empty()) {
-        const auto [d, v] = queue.top();
-        queue.pop();
-        if (d > length[at(v)]) {
-            continue;
-        }
-        for (int k = surface.rings.begin[at(v)]; k < surface.rings.begin[at(v) + 1]; ++k) {
-            const int w = surface.rings.slots[at(k)].neighbour;
-            const double through = d + (surface.positions[at(v)] - surface.positions[at(w)]).norm();
-            if (through < length[at(w)]) {
-                length[at(w)] = through;
-                queue.emplace(through, w);
-            }
-        }
-    }
-    return length;
 }
 
 int farthest(const std::vector<double>& length) {
@@ -79,13 +49,14 @@ SweepValues harmonic(const DecompositionSurface& surface, int attempt) {
     sweep.loop_is_low.assign(loops.size(), 0);
     if (loops.empty()) {
         // The ends of the longest way; attempts start at other places, far from all before.
-        std::vector<int> ends{farthest(path_lengths(surface, std::array{0}))};
+        std::vector<int> ends{
+            farthest(path_lengths(surface.rings, surface.positions, std::array{0}))};
         for (int k = 0; k <= attempt; ++k) {
-            ends.push_back(farthest(path_lengths(surface, ends)));
+            ends.push_back(farthest(path_lengths(surface.rings, surface.positions, ends)));
         }
         const int low = attempt == 0 ? ends.front() : ends.back();
         hold(low, 0.0);
-        hold(farthest(path_lengths(surface, std::array{low})), 1.0);
+        hold(farthest(path_lengths(surface.rings, surface.positions, std::array{low})), 1.0);
     } else {
         const std::size_t source = at(attempt) % loops.size();
         sweep.loop_is_low[source] = 1;
@@ -97,7 +68,7 @@ SweepValues harmonic(const DecompositionSurface& surface, int attempt) {
         if (loops.size() == 1) {
             std::vector<int> far = loops[0];
             for (int k = 0; k <= attempt; ++k) {
-                far.push_back(farthest(path_lengths(surface, far)));
+                far.push_back(farthest(path_lengths(surface.rings, surface.positions, far)));
             }
             hold(far.back(), 1.0);
             sweep.loop_is_low[0] = 1;

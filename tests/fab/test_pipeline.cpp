@@ -179,7 +179,7 @@ TEST(Weave, WeavesEachPartOrTheLargestAlone) {
     const std::string model = geometry::write_obj(side_by_side(
         geometry::make_sample("torus", 1500), geometry::make_sample("cylinder", 600), 20.0));
     JobParams params = small_job();
-    params.grid.strip_width_mm = 5.0;  // So that whole numbers of rows mean little.
+    params.scale.longest_side_mm = 300.0;  // So that whole numbers of rows mean little.
     const PackageSummary both = weave_text(model, params, "both.obj");
     const std::string& report = both.package.find("report.json")->bytes;
     EXPECT_EQ(number_behind(report, "components"), 2.0);
