@@ -35,6 +35,14 @@ TEST(WeaveCells, AlternatesPlainWeaveWithoutSeamsWhereCountsAreEven) {
     EXPECT_EQ(floats(result, 6, 8), 1);
 }
 
+TEST(WeaveCells, RepeatsTwillRoundATorusOfWholePeriods) {
+    EXPECT_TRUE(weave(test::torus_grid({8, 12}, 50.0, 15.0), WeavePattern::Twill2x2).seams.empty());
+    const Weave broken = weave(test::torus_grid({8, 10}, 50.0, 15.0), WeavePattern::Twill2x2);
+    EXPECT_EQ(broken.seams.size(), 8U);
+    EXPECT_TRUE(broken.shortest);
+    EXPECT_GT(broken.seam_mm, 0.0);
+}
+
 TEST(WeaveCells, ListsTheSeamOfAnOddRing) {
     const auto mesh = test::cylinder_grid({4, 7}, 20.0, 30.0);
     const Weave result = weave(mesh, WeavePattern::Plain);

@@ -359,6 +359,18 @@ TEST(Conforming, JoinsTheEndsOfACylinderThinnerThanARow) {
     }
 }
 
+TEST(Conforming, ClosesWholePeriodsOfAPattern) {
+    for (const int period : {3, 4}) {
+        GridOptions options = about(double_torus(), 1500.0);
+        options.period = period;
+        const QuadMesh mesh = build_quad_mesh(double_torus().foliation, options);
+        for (const CylinderGrid& grid : mesh.grids) {
+            EXPECT_EQ(grid.cols % period, 0);
+        }
+        EXPECT_EQ(alternates(mesh), period % 2 == 0);
+    }
+}
+
 TEST(Conforming, HonoursFixedCountsOrSaysWhyNot) {
     const Model& model = double_torus();
     GridOptions options = about(model, 800.0);
