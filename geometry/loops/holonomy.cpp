@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <optional>
 #include <random>
-#include <ranges>
 #include <utility>
 
 #include "geometry/error.h"
@@ -161,8 +160,8 @@ public:
             close(matrices, draw);
         }
         // Farthest triangles first: two sides are known, the third follows.
-        for (const int t : std::views::reverse(order_)) {
-            const int h = parent_[at(t)];
+        for (auto triangle = order_.rbegin(); triangle != order_.rend(); ++triangle) {
+            const int h = parent_[at(*triangle)];
             if (h >= 0) {
                 set(matrices, h,
                     (along(matrices, HalfEdges::next(h)) * along(matrices, HalfEdges::previous(h)))

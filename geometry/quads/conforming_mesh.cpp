@@ -288,11 +288,14 @@ public:
                 continue;
             }
             most = most > 0.0 ? most : kMostRefined * size;
-            const ArcNetwork arcs = relax_arcs(foliation_, network_, counts, context);
+            ArcNetwork arcs = relax_arcs(foliation_, network_, counts, context);
             JoinedMesh mesh = build(foliation_, arcs, counts, options_, context);
             if (mesh.folded > 0) {  // Columns that stay in place may do better.
                 JoinedMesh even = build(foliation_, network_, counts, options_, context);
-                mesh = even.folded < mesh.folded ? std::move(even) : std::move(mesh);
+                if (even.folded < mesh.folded) {
+                    mesh = std::move(even);
+                    arcs = network_;
+                }
             }
             const double folded = static_cast<double>(mesh.folded);
             if (folded <= std::max(kFewFolded, kFoldedShare * counts.cells)) {

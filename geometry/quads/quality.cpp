@@ -7,7 +7,7 @@
 // region it stands for is more than kCapFactor times the area the quad projects to. Where a chord
 // bends through a right angle that begins: over a quarter of a round cylinder the factor is 1.11,
 // over a spherical cap of 90 degrees 1.17. Beyond, the quad doesn't follow the surface any more and
-// the difference counts as removed.
+// the difference counts as removed, unless neighbours cover the place.
 
 #include "geometry/quads/quality.h"
 
@@ -124,12 +124,14 @@ Quality summarise(std::span<const CellQuality> cells,
 
 double removed_area(std::span<const CellQuality> cells) {
     double removed = 0.0;
+    double lacking = 0.0;
     for (const CellQuality& cell : cells) {
         if (cell.region_area > kCapFactor * cell.projected_area) {
             removed += cell.region_area - cell.projected_area;
         }
+        lacking += cell.region_area - cell.projected_area;
     }
-    return removed;
+    return std::clamp(lacking, 0.0, removed);
 }
 
 }  // namespace
