@@ -36,6 +36,11 @@ using Eigen::Vector3d;
 // From a number of cells that would fold over to the next, and how often.
 constexpr double kFiner = 1.5;
 constexpr int kMostSizes = 10;
+// What a cell's region may be of it before the cell caps a limb, and how much of a cylinder other
+// cells may cut off.
+constexpr double kCapped = 1.1;
+constexpr double kMostLacking = 0.025;
+const char* const kTooCoarse = "quads-too-coarse";
 // Of the mean width of strips.
 constexpr double kWidthTolerance = 0.02;
 // More cells than asked for by this part is another strip width.
@@ -93,10 +98,38 @@ void check_topology(std::size_t cylinder, const ChartGrid& grid, const Patch& pa
 void check_facing(std::size_t cylinder, const Patch& patch, const CellRegions& regions) {
     const std::size_t inverted = count_inverted(patch, regions);
     if (inverted > 0) {
-        throw Error(ErrorKind::SelfCheck, "quads-inverted",
+        throw Error(ErrorKind::SelfCheck, kTooCoarse,
                     fmt::format("quads: {} of {} quads of cylinder {} face inwards; use narrower "
                                 "strips (grid.strip_width_mm)",
                                 inverted, patch.quads.size(), cylinder));
+    }
+}
+
+double area_of(const Patch& patch, const std::array<int, 4>& quad) {
+    const auto corner = [&](std::size_t i) -> const Vector3d& {
+        return patch.vertices[static_cast<std::size_t>(quad[i])];
+    };
+    const Vector3d diagonal = corner(2) - corner(0);
+    return 0.5 * ((corner(1) - corner(0)).cross(diagonal).norm() +
+                  diagonal.cross(corner(3) - corner(0)).norm());
+}
+
+// Cells that are chords of a strongly bent surface cut off much of it. Those that cap a limb are
+// another matter: no near size of cells would cure them.
+void check_chords(std::size_t cylinder,
+                  const Patch& patch,
+                  const CellRegions& regions,
+                  double area) {
+    double lacking = 0.0;
+    for (std::size_t i = 0; i < patch.quads.size(); ++i) {
+        const double quad = area_of(patch, patch.quads[i]);
+        lacking += regions.area[i] > kCapped * quad ? 0.0 : regions.area[i] - quad;
+    }
+    if (lacking > kMostLacking * area) {
+        throw Error(ErrorKind::SelfCheck, kTooCoarse,
+                    fmt::format("quads: {:.1f} % of cylinder {} bulge out of their cells; use "
+                                "narrower strips (grid.strip_width_mm)",
+                                100.0 * lacking / area, cylinder));
     }
 }
 
@@ -121,7 +154,8 @@ struct Work {
     const Cylinder& chart;
     const ChartSampler& sampler;
     double area = 0.0;
-    bool alone = false;  // No other cylinder belongs to the surface.
+    bool alone = false;        // No other cylinder belongs to the surface.
+    bool must_follow = false;  // Narrower strips may cure cells that cut off too much.
 };
 
 void add_cylinder(QuadMesh& mesh,
@@ -138,6 +172,9 @@ void add_cylinder(QuadMesh& mesh,
         offset_by_half_sag(patch.vertices, sag_cells(patch, regions, grid, work.sampler));
     }
     check_facing(work.cylinder, patch, regions);
+    if (work.must_follow) {
+        check_chords(work.cylinder, patch, regions, work.area);
+    }
     append(mesh, patch, grid, regions);
 }
 
@@ -171,11 +208,8 @@ void tell_narrow(QuadMesh& mesh, const Work& work, double cells, const GridOptio
 
 // The cylinder's quads at the wished size, or smaller ones where so few can't close the surface or
 // would face inwards: a few cells can't follow a small cylinder that bends sharply.
-void add_fine_enough(QuadMesh& mesh,
-                     const Work& work,
-                     GridWish wish,
-                     const GridOptions& options,
-                     const Context& context) {
+void add_fine_enough(
+    QuadMesh& mesh, Work work, GridWish wish, const GridOptions& options, const Context& context) {
     const double wished = wish.cells;
     const double share = cells_per_square(work.chart);
     const bool free = !wish.counts.rows && !wish.counts.cols;
@@ -185,6 +219,7 @@ void add_fine_enough(QuadMesh& mesh,
     const bool may_refine = !wish.counts.rows || !wish.counts.cols;
     bool may_grade = options.spacing != Spacing::Uniform;
     for (int tries = 1;; ++tries) {
+        work.must_follow = may_refine && options.half_sag_offset && tries < kMostSizes;
         CylinderGrid grid = choose_grid(work.chart, wish);
         const double cells = static_cast<double>(grid.rows) * grid.cols;
         if (free && cells > kMostExcess * share * wish.cells && tries < kMostSizes) {
@@ -199,11 +234,11 @@ void add_fine_enough(QuadMesh& mesh,
         try {
             add_cylinder(mesh, work, grid, options, context);
         } catch (const Error& error) {
-            if (error.code() == "quads-inverted" && !stays_even) {
+            if (error.code() == kTooCoarse && !stays_even) {
                 may_grade = false;
                 continue;
             }
-            if (error.code() != "quads-inverted" || !may_refine || tries >= kMostSizes) {
+            if (error.code() != kTooCoarse || !may_refine || tries >= kMostSizes) {
                 throw;
             }
             wish.cells *= kFiner;
