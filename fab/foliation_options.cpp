@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -108,12 +109,17 @@ private:
     int nearest_to(const std::array<double, 3>& position) const {
         const Eigen::Vector3d place =
             mesh_.scale * Eigen::Vector3d(position[0], position[1], position[2]);
-        const auto nearest = std::min_element(
-            mesh_.mesh->vertices_begin(), mesh_.mesh->vertices_end(), [&](auto a, auto b) {
-                return (mesh_.mesh->point(a) - place).squaredNorm() <
-                       (mesh_.mesh->point(b) - place).squaredNorm();
-            });
-        return nearest->idx();
+        int nearest = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (int v = 0; v < static_cast<int>(mesh_.mesh->n_vertices()); ++v) {
+            const double distance =
+                (mesh_.mesh->point(geometry::Mesh::VertexHandle(v)) - place).squaredNorm();
+            if (distance < least) {
+                least = distance;
+                nearest = v;
+            }
+        }
+        return nearest;
     }
 
     std::vector<geometry::LoopName> boundaries(const std::vector<LoopParams>& named,

@@ -49,8 +49,9 @@ public:
         }
         PatternStarts result;
         result.start.assign(gone_.size(), 0);
-        for (auto step = order_.rbegin(); step != order_.rend(); ++step) {
-            result.start[at(step->region)] = step->best[place(step->met, result.start)];
+        for (std::size_t i = order_.size(); i-- > 0;) {
+            const Eliminated& step = order_[i];
+            result.start[at(step.region)] = step.best[place(step.met, result.start)];
         }
         for (const Table& table : tables_) {
             result.cost += table.cost.front();

@@ -74,7 +74,10 @@ std::vector<Shift> different_shifts(const Matrix& matrix) {
     const int rows = static_cast<int>(matrix.size());
     const int cols = static_cast<int>(matrix.front().size());
     std::vector<char> period(matrix.size() * matrix.front().size(), 0);
-    const auto at = [cols](int row, int col) { return static_cast<std::size_t>(row * cols + col); };
+    const auto at = [cols](int row, int col) {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) +
+               static_cast<std::size_t>(col);
+    };
     for (int row = 0; row < rows; ++row) {
         for (int col = 0; col < cols; ++col) {
             period[at(row, col)] = is_period(matrix, row, col) ? 1 : 0;

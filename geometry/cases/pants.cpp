@@ -253,8 +253,8 @@ Foliation suit_junctions(Foliation foliation,
         other.map = map;
         return assemble(carry_up(hierarchy, other, context), options, context);
     };
-    return with_whole_columns(std::move(foliation), hierarchy.levels.back(), coarse.map, options,
-                              refoliate, context);
+    return with_whole_columns(std::move(foliation),
+                              {hierarchy.levels.back(), coarse.map, refoliate}, options, context);
 }
 
 // Weights that are given, or lead singular points, stay.
@@ -322,6 +322,7 @@ std::optional<Foliation> try_candidates(const Hierarchy& hierarchy,
 // What to try, one after the other. Where ways are forbidden, other sources may know another one.
 std::vector<CoarseOptions> attempts_of(const FoliationOptions& options) {
     std::vector<CoarseOptions> attempts;
+    attempts.reserve(kAttempts);
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
         attempts.push_back({options.pants, options.function, options.weights, attempt});
     }

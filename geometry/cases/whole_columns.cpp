@@ -95,15 +95,14 @@ double furthest_off(const Foliation& foliation, const std::vector<int>& columns)
 
 // A failure is not the caller's: there is a foliation that does without.
 std::optional<Stand> reweighed(const Stand& stand,
-                               const Hierarchy::Level& level,
+                               const Origin& origin,
                                const CircumferenceWish& wish,
                                const JunctionAim& aim,
-                               const Refoliate& refoliate,
                                const Context& context) {
     try {
         Stand next;
-        next.coarse = fit_weights(level, stand.coarse, wish, context);
-        next.foliation = refoliate(next.coarse);
+        next.coarse = fit_weights(origin.level, stand.coarse, wish, context);
+        next.foliation = origin.refoliate(next.coarse);
         std::optional<JunctionCounts> counts = counts_of(next.foliation, aim, context);
         if (counts) {
             next.counts = std::move(*counts);
@@ -120,10 +119,8 @@ std::optional<Stand> reweighed(const Stand& stand,
 }  // namespace
 
 Foliation with_whole_columns(Foliation foliation,
-                             const Hierarchy::Level& level,
-                             const GraphMap& coarse,
+                             const Origin& origin,
                              const FoliationOptions& options,
-                             const Refoliate& refoliate,
                              const Context& context) {
     const JunctionAim& aim = *options.junctions;
     if (foliation.cylinders.size() < 2 || foliation.cylinders.size() > kMostCylinders) {
@@ -140,7 +137,7 @@ Foliation with_whole_columns(Foliation foliation,
         return foliation;  // Too few cells for the topology: the grid says so.
     }
     best.foliation = std::move(foliation);
-    best.coarse = coarse;
+    best.coarse = origin.coarse;
     const std::vector<double> home = weights_of(best.foliation.graph);
     const double slack = options.weights ? kGivenSlack : kAutomaticSlack;
     Stand last = best;
@@ -148,10 +145,10 @@ Foliation with_whole_columns(Foliation foliation,
     const int rounds = triangles_of(last.foliation) > kLargeSurface ? 1 : kMostRounds;
     for (int round = 0;
          round < rounds && furthest_off(last.foliation, columns) > kWorthAnotherRound; ++round) {
-        CircumferenceWish wish = wish_for(last, level, columns);
+        CircumferenceWish wish = wish_for(last, origin.level, columns);
         wish.weights = home;
         wish.most_change = slack;
-        std::optional<Stand> next = reweighed(last, level, wish, aim, refoliate, context);
+        std::optional<Stand> next = reweighed(last, origin, wish, aim, context);
         if (!next) {
             break;
         }

@@ -16,14 +16,19 @@ namespace leafcutter::geometry {
 // The foliation that a map of the coarsest level leads to.
 using Refoliate = std::function<Foliation(const GraphMap& coarse)>;
 
+// Where a foliation came from: the solved map of the coarsest level, and the way up from there.
+struct Origin {
+    const Hierarchy::Level& level;
+    const GraphMap& coarse;
+    const Refoliate& refoliate;
+};
+
 // A foliation by pants whose junctions suit the aim better, or `foliation` itself. Weights that the
-// user gave move by up to 5 % against each other, automatic ones by 15 %. `coarse` is the solved
-// map of the level that `foliation` came from. Throws what `refoliate` throws but SelfCheck errors.
+// user gave move by up to 5 % against each other, automatic ones by 15 %. Throws what `refoliate`
+// throws but SelfCheck errors.
 Foliation with_whole_columns(Foliation foliation,
-                             const Hierarchy::Level& level,
-                             const GraphMap& coarse,
+                             const Origin& origin,
                              const FoliationOptions& options,
-                             const Refoliate& refoliate,
                              const Context& context);
 
 }  // namespace leafcutter::geometry

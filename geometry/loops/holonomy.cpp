@@ -160,8 +160,8 @@ public:
             close(matrices, draw);
         }
         // Farthest triangles first: two sides are known, the third follows.
-        for (auto triangle = order_.rbegin(); triangle != order_.rend(); ++triangle) {
-            const int h = parent_[at(*triangle)];
+        for (std::size_t i = order_.size(); i-- > 0;) {
+            const int h = parent_[at(order_[i])];
             if (h >= 0) {
                 set(matrices, h,
                     (along(matrices, HalfEdges::next(h)) * along(matrices, HalfEdges::previous(h)))

@@ -48,15 +48,16 @@ std::vector<Holonomy> unflipped(const Hierarchy::Level& level, std::vector<Holon
         const std::size_t edge = at(mesh.edge_of(h));
         return start[edge] == mesh.from_of(h) ? holonomies[edge] : holonomies[edge].inverse();
     };
-    for (auto flip = level.flipped.flips.rbegin(); flip != level.flipped.flips.rend(); ++flip) {
-        const int h = mesh.half_edge_of(*flip);
+    for (std::size_t i = level.flipped.flips.size(); i-- > 0;) {
+        const int flip = level.flipped.flips[i];
+        const int h = mesh.half_edge_of(flip);
         const int c = mesh.facing(h);
         // From c to the start of h, and on to the corner on its other side.
         const Holonomy across =
             of_side(HalfEdges::previous(h)) * of_side(HalfEdges::next(mesh.twin_of(h)));
         mesh.flip(h);
-        holonomies[at(*flip)] = across;
-        start[at(*flip)] = c;
+        holonomies[at(flip)] = across;
+        start[at(flip)] = c;
     }
     for (std::size_t e = 0; e < start.size(); ++e) {
         if (start[e] != level.rings.edges[e].from) {

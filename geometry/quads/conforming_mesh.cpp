@@ -186,8 +186,7 @@ JoinedMesh build(const Foliation& foliation,
     if (options.half_sag_offset) {
         offset_by_half_sag(mesh.vertices, cells);
     }
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        Piece& piece = pieces[i];
+    for (Piece& piece : pieces) {
         mesh.folded += count_inverted({mesh.vertices, piece.patch.quads}, piece.regions);
         mesh.parts.push_back({.chart = std::move(piece.chart),
                               .grid = std::move(piece.grid),

@@ -95,7 +95,7 @@ CylinderGrid graded_grid(const GradingWish& wish, const Context& context) {
         const CylinderGrid by_rule = closest.best();
         for (const CylinderGrid& start : {by_rule, wish.even}) {
             closest.offer(
-                closest_levels(wish.chart, distances, wish.even, start, movable, context));
+                closest_levels(wish.chart, distances, {wish.even, start}, movable, context));
         }
     }
     return closest.best();

@@ -123,32 +123,33 @@ private:
     const std::vector<ParityCost>& costs_;
 };
 
+// From ends whose colour is known to those they meet; false if there is none.
+bool spread_colours(const std::vector<std::vector<ArcSide>>& sides, EndColours& known) {
+    bool changed = false;
+    for (const std::vector<ArcSide>& both : sides) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            const int from = known[both[k].cylinder][both[k].end];
+            int& other = known[both[1 - k].cylinder][both[1 - k].end];
+            if (from >= 0 && other < 0) {
+                other = (from + both[0].colour + both[1].colour + 1) % 2;
+                changed = true;
+            }
+        }
+    }
+    return changed;
+}
+
 }  // namespace
 
 EndColours colour_ends(const ArcNetwork& network, const std::vector<int>& arc_cells) {
     const auto sides = sides_of_arcs(network, arc_cells);
-    std::vector<std::array<int, 2>> known(network.ends.size(), {-1, -1});
-    const auto colour_of = [&known](const ArcSide& side) -> int& {
-        return known[side.cylinder][side.end];
-    };
-    const auto spread = [&] {
-        bool changed = false;
-        for (const std::vector<ArcSide>& both : sides) {
-            for (std::size_t k = 0; k < 2; ++k) {
-                if (colour_of(both[k]) >= 0 && colour_of(both[1 - k]) < 0) {
-                    colour_of(both[1 - k]) =
-                        (colour_of(both[k]) + both[0].colour + both[1].colour + 1) % 2;
-                    changed = true;
-                }
-            }
-        }
-        return changed;
-    };
+    EndColours known(network.ends.size(), {-1, -1});
+    const auto colour_of = [&known](const ArcSide& side) { return known[side.cylinder][side.end]; };
     for (const int c : network.cylinders) {
         for (int& colour : known[at(c)]) {
             if (colour < 0) {
                 colour = 0;
-                while (spread()) {
+                while (spread_colours(sides, known)) {
                 }
             }
         }

@@ -278,15 +278,14 @@ private:
 
 CylinderGrid closest_levels(const Cylinder& chart,
                             const StripDistances& distances,
-                            const CylinderGrid& even,
-                            const CylinderGrid& start,
+                            const SearchStart& from,
                             MovableLevels movable,
                             const Context& context) {
-    LevelSearch search(chart, distances, even, context);
+    LevelSearch search(chart, distances, from.even, context);
     if (search.flat()) {
-        return even;
+        return from.even;
     }
-    search.run(start, movable, context);
+    search.run(from.start, movable, context);
     return search.grid();
 }
 

@@ -17,13 +17,17 @@ struct MovableLevels {
     bool cols = true;
 };
 
+struct SearchStart {
+    const CylinderGrid& even;   // What the result is held against.
+    const CylinderGrid& start;  // Where the search begins.
+};
+
 // From `start` on, by the largest distance over the leaves' lengths; the mean distance stays that
 // of `even` or falls. Counts stay, levels rise, and no move leaves a strip much narrower or wider
 // than `even` has it.
 CylinderGrid closest_levels(const Cylinder& chart,
                             const StripDistances& distances,
-                            const CylinderGrid& even,
-                            const CylinderGrid& start,
+                            const SearchStart& from,
                             MovableLevels movable,
                             const Context& context);
 

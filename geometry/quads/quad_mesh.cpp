@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <string>
 #include <utility>
@@ -45,9 +46,9 @@ const char* const kTooCoarse = "quads-too-coarse";
 constexpr double kWidthTolerance = 0.02;
 // More cells than asked for by this part is another strip width.
 constexpr double kMostExcess = 1.1;
-// Cells of a surface of one cylinder are not longer than this times their width, if their number is
-// free.
-const double kMostStretch = std::log(2.0);
+// Cells of a surface of one cylinder are not longer than twice their width, if their number is
+// free: as a logarithm.
+constexpr double kMostStretch = std::numbers::ln2;
 
 void check_options(const Foliation& foliation, const GridOptions& options) {
     if (!std::isfinite(options.strip_width_mm) || options.strip_width_mm <= 0.0) {
