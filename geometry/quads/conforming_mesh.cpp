@@ -14,9 +14,8 @@
 #include "geometry/quads/conforming_charts.h"
 #include "geometry/quads/critical_arcs.h"
 #include "geometry/quads/graded_rows.h"
+#include "geometry/quads/joined_pieces.h"
 #include "geometry/quads/junction_counts.h"
-#include "geometry/quads/patch.h"
-#include "geometry/quads/quad_edges.h"
 #include "geometry/quads/relaxed_arcs.h"
 #include "geometry/quads/shared_vertices.h"
 #include "geometry/quads/strip_width.h"
@@ -47,35 +46,20 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-// A cylinder's own grid, before its vertices are shared.
-struct Piece {
-    Cylinder chart;
-    CylinderGrid grid;
-    Patch patch;
-    CellRegions regions;
-    std::vector<SagCell> cells;
-};
-
-Piece make_piece(const Foliation& foliation,
-                 const ArcNetwork& network,
-                 const JunctionCounts& counts,
-                 int cylinder,
-                 const Context& context) {
-    Piece piece;
+JoinedPiece make_piece(const Foliation& foliation,
+                       const ArcNetwork& network,
+                       const JunctionCounts& counts,
+                       int cylinder,
+                       const Context& context) {
     if (counts.rows[at(cylinder)] == 0) {
-        piece.chart = foliation.cylinders[at(cylinder)];
-        piece.grid.shape = piece.chart.shape;
-        return piece;
+        JoinedPiece none;
+        none.chart = foliation.cylinders[at(cylinder)];
+        none.grid.shape = none.chart.shape;
+        return none;
     }
-    piece.chart = conform_chart(foliation, network, counts, cylinder, context);
-    piece.grid = conforming_grid(piece.chart, counts, cylinder);
-    const ChartGrid grid(piece.chart, piece.grid);
-    const ChartSampler sampler(piece.chart);
-    piece.patch = sample_patch(grid, sampler, context);
-    piece.regions = cut_regions(piece.chart, grid);
-    check_regions(at(cylinder), piece.regions, surface_area(piece.chart.mesh));
-    piece.cells = sag_cells(piece.patch, piece.regions, grid, sampler);
-    return piece;
+    Cylinder chart = conform_chart(foliation, network, counts, cylinder, context);
+    CylinderGrid grid = conforming_grid(chart, counts, cylinder);
+    return sample_piece(std::move(chart), std::move(grid), cylinder, context);
 }
 
 // Gives the pieces' vertices their numbers in the whole.
@@ -86,7 +70,7 @@ public:
         vertices_ = shared.positions();
     }
 
-    void add(Piece& piece, int cylinder) {
+    void add(JoinedPiece& piece, int cylinder) {
         if (piece.grid.rows == 0) {
             return;
         }
@@ -105,12 +89,7 @@ public:
                 }
             }
         }
-        for (std::size_t i = 0; i < piece.patch.quads.size(); ++i) {
-            for (int& corner : piece.patch.quads[i]) {
-                corner = number[at(corner)];
-            }
-            piece.cells[i].corners = piece.patch.quads[i];
-        }
+        renumber(piece, number);
     }
 
 private:
@@ -127,42 +106,17 @@ void check_whole(const Foliation& foliation,
                  const JunctionCounts& counts,
                  const SharedVertices& shared,
                  const JoinedMesh& mesh) {
-    std::vector<std::array<int, 4>> quads;
-    for (const JoinedCylinder& part : mesh.parts) {
-        quads.insert(quads.end(), part.quads.begin(), part.quads.end());
-    }
-    std::vector<int> wanted = shared.valences(foliation);
-    wanted.resize(mesh.vertices.size(), 4);
-    const QuadNeighbours found = find_neighbours(quads);
-    int open_edges = 0;
+    JoinedTopology wanted;
+    wanted.valences = shared.valences(foliation);
+    wanted.valences.resize(mesh.vertices.size(), 4);
     for (const int c : network.cylinders) {
         for (int end = 0; end < 2; ++end) {
-            open_edges += network.is_open(c, end) ? counts.cols[at(c)] : 0;
+            wanted.open_edges += network.is_open(c, end) ? counts.cols[at(c)] : 0;
         }
     }
-    std::vector<int> valence(mesh.vertices.size(), 0);
-    for (std::size_t q = 0; q < quads.size(); ++q) {
-        for (std::size_t side = 0; side < 4; ++side) {
-            ++valence[at(quads[q][side])];
-            if (found.across[q][side].quad < 0) {  // Two quads meet at each boundary vertex.
-                ++valence[at(quads[q][side])];
-                ++valence[at(quads[q][(side + 1) % 4])];
-            }
-        }
-    }
-    const int euler =
-        static_cast<int>(mesh.vertices.size()) - found.edges + static_cast<int>(quads.size());
-    const int wanted_euler =
-        static_cast<int>(shared.singular_points()) - static_cast<int>(network.arcs.size());
-    if (found.faults != 0 || found.boundary_edges != open_edges || euler != wanted_euler ||
-        valence != wanted) {
-        throw Error(
-            ErrorKind::SelfCheck, "quads-topology",
-            fmt::format("quads: joined cylinders have {} faulty edges, Euler "
-                        "characteristic {} instead of {} and {} boundary edges instead "
-                        "of {}, or wrong valences",
-                        found.faults, euler, wanted_euler, found.boundary_edges, open_edges));
-    }
+    wanted.doubled_euler =
+        2 * (static_cast<int>(shared.singular_points()) - static_cast<int>(network.arcs.size()));
+    check_topology(mesh, wanted, "cylinders");
 }
 
 JoinedMesh build(const Foliation& foliation,
@@ -170,7 +124,7 @@ JoinedMesh build(const Foliation& foliation,
                  const JunctionCounts& counts,
                  const GridOptions& options,
                  const Context& context) {
-    std::vector<Piece> pieces(network.cylinders.size());
+    std::vector<JoinedPiece> pieces(network.cylinders.size());
     for_each_task(pieces.size(), context, [&](std::size_t i, const Context& own) {
         pieces[i] = make_piece(foliation, network, counts, network.cylinders[i], own);
     });
@@ -178,21 +132,10 @@ JoinedMesh build(const Foliation& foliation,
     mesh.cylinders = network.cylinders;
     const SharedVertices shared(foliation, network, counts);
     Joiner joiner(network, shared, mesh.vertices);
-    std::vector<SagCell> cells;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         joiner.add(pieces[i], network.cylinders[i]);
-        cells.insert(cells.end(), pieces[i].cells.begin(), pieces[i].cells.end());
     }
-    if (options.half_sag_offset) {
-        offset_by_half_sag(mesh.vertices, cells);
-    }
-    for (Piece& piece : pieces) {
-        mesh.folded += count_inverted({mesh.vertices, piece.patch.quads}, piece.regions);
-        mesh.parts.push_back({.chart = std::move(piece.chart),
-                              .grid = std::move(piece.grid),
-                              .quads = std::move(piece.patch.quads),
-                              .surface_area = std::move(piece.regions.area)});
-    }
+    add_parts(mesh, std::move(pieces), options);
     check_whole(foliation, network, counts, shared, mesh);
     return mesh;
 }
@@ -245,15 +188,9 @@ JunctionWish wish_of(const Foliation& foliation, const GridOptions& options, dou
     wish.cells = area / (options.strip_width_mm * options.strip_width_mm);
     wish.parity = options.parity;
     wish.period = options.period;
-    wish.counts.assign(foliation.cylinders.size(), options.all);
-    wish.paths.assign(foliation.cylinders.size(), "grid");
-    for (std::size_t c = 0; c < options.per_cylinder.size(); ++c) {
-        const RowsCols& own = options.per_cylinder[c];
-        if (own.rows || own.cols) {
-            wish.counts[c] = own;
-            wish.paths[c] = fmt::format("grid.cylinders[{}]", c);
-        }
-    }
+    FixedCounts fixed = fixed_counts(options, foliation.cylinders.size());
+    wish.counts = std::move(fixed.counts);
+    wish.paths = std::move(fixed.paths);
     return wish;
 }
 

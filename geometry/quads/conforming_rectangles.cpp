@@ -12,8 +12,7 @@
 #include "geometry/parallel.h"
 #include "geometry/quads/critical_sides.h"
 #include "geometry/quads/flank_vertices.h"
-#include "geometry/quads/patch.h"
-#include "geometry/quads/quad_edges.h"
+#include "geometry/quads/joined_pieces.h"
 #include "geometry/quads/rectangle_charts.h"
 #include "geometry/quads/rectangle_counts.h"
 #include "geometry/quads/rectangle_rows.h"
@@ -40,33 +39,17 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-// A rectangle's own grid, before its vertices are shared.
-struct Piece {
-    Cylinder chart;
-    CylinderGrid grid;
-    Patch patch;
-    CellRegions regions;
-    std::vector<SagCell> cells;
-};
-
-Piece make_piece(const RectanglePlan& plan, int cylinder, const Context& context) {
-    Piece piece;
-    piece.chart = bend_chart(plan, cylinder, context);
-    piece.grid = rectangle_grid(plan, piece.chart, cylinder);
-    const ChartGrid grid(piece.chart, piece.grid);
-    const ChartSampler sampler(piece.chart);
-    piece.patch = sample_patch(grid, sampler, context);
-    piece.regions = cut_regions(piece.chart, grid);
-    check_regions(at(cylinder), piece.regions, surface_area(piece.chart.mesh));
-    piece.cells = sag_cells(piece.patch, piece.regions, grid, sampler);
-    return piece;
+JoinedPiece make_piece(const RectanglePlan& plan, int cylinder, const Context& context) {
+    Cylinder chart = bend_chart(plan, cylinder, context);
+    CylinderGrid grid = rectangle_grid(plan, chart, cylinder);
+    return sample_piece(std::move(chart), std::move(grid), cylinder, context);
 }
 
 // Gives a piece's vertices their numbers in the whole.
 void number_piece(const RectanglePlan& plan,
                   const FlankVertices& shared,
                   int cylinder,
-                  Piece& piece,
+                  JoinedPiece& piece,
                   std::vector<Vector3d>& vertices) {
     const auto& flanks = plan.network.flanks[at(cylinder)];
     const ChartGrid grid(piece.chart, piece.grid);
@@ -81,12 +64,7 @@ void number_piece(const RectanglePlan& plan,
             vertices.push_back(piece.patch.vertices[at(grid.vertex(row, col))]);
         }
     }
-    for (std::size_t i = 0; i < piece.patch.quads.size(); ++i) {
-        for (int& corner : piece.patch.quads[i]) {
-            corner = number[at(corner)];
-        }
-        piece.cells[i].corners = piece.patch.quads[i];
-    }
+    renumber(piece, number);
 }
 
 // Edges that only one quad has: at sources, sinks and natural loops.
@@ -112,43 +90,19 @@ int open_edges(const RectanglePlan& plan) {
 // What theory says: every edge between two quads but those on loops, Euler characteristic by the
 // zeros' prongs, four quads round every vertex inside but twice its prongs round a zero.
 void check_whole(const RectanglePlan& plan, const FlankVertices& shared, const JoinedMesh& mesh) {
-    std::vector<std::array<int, 4>> quads;
-    for (const JoinedCylinder& part : mesh.parts) {
-        quads.insert(quads.end(), part.quads.begin(), part.quads.end());
-    }
-    std::vector<int> wanted(mesh.vertices.size(), 4);
-    int doubled = 0;
+    JoinedTopology wanted;
+    wanted.valences.assign(mesh.vertices.size(), 4);
     for (const FormZeroPlace& zero : plan.network.zeros) {
         const int prongs = plan.foliation.critical_points[at(zero.point)].prongs;
-        wanted[at(shared.stops().at(zero.point))] = 2 * prongs;
-        doubled += prongs - 2;
+        wanted.valences[at(shared.stops().at(zero.point))] = 2 * prongs;
+        wanted.doubled_euler -= prongs - 2;
     }
-    const QuadNeighbours found = find_neighbours(quads);
-    std::vector<int> valence(mesh.vertices.size(), 0);
-    for (std::size_t q = 0; q < quads.size(); ++q) {
-        for (std::size_t side = 0; side < 4; ++side) {
-            ++valence[at(quads[q][side])];
-            if (found.across[q][side].quad < 0) {  // Two quads meet at each boundary vertex.
-                ++valence[at(quads[q][side])];
-                ++valence[at(quads[q][(side + 1) % 4])];
-            }
-        }
-    }
-    const int euler =
-        static_cast<int>(mesh.vertices.size()) - found.edges + static_cast<int>(quads.size());
-    const int open = open_edges(plan);
-    if (found.faults != 0 || found.boundary_edges != open || 2 * euler != -doubled ||
-        valence != wanted) {
-        throw Error(ErrorKind::SelfCheck, "quads-topology",
-                    fmt::format("quads: joined rectangles have {} faulty edges, Euler "
-                                "characteristic {} instead of {} and {} boundary edges instead of "
-                                "{}, or wrong valences",
-                                found.faults, euler, -doubled / 2, found.boundary_edges, open));
-    }
+    wanted.open_edges = open_edges(plan);
+    check_topology(mesh, wanted, "rectangles");
 }
 
 JoinedMesh build(const RectanglePlan& plan, const GridOptions& options, const Context& context) {
-    std::vector<Piece> pieces(plan.network.cylinders.size());
+    std::vector<JoinedPiece> pieces(plan.network.cylinders.size());
     for_each_task(pieces.size(), context, [&](std::size_t i, const Context& own) {
         pieces[i] = make_piece(plan, plan.network.cylinders[i], own);
     });
@@ -156,21 +110,10 @@ JoinedMesh build(const RectanglePlan& plan, const GridOptions& options, const Co
     mesh.cylinders = plan.network.cylinders;
     const FlankVertices shared(plan);
     mesh.vertices = shared.positions();
-    std::vector<SagCell> cells;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         number_piece(plan, shared, plan.network.cylinders[i], pieces[i], mesh.vertices);
-        cells.insert(cells.end(), pieces[i].cells.begin(), pieces[i].cells.end());
     }
-    if (options.half_sag_offset) {
-        offset_by_half_sag(mesh.vertices, cells);
-    }
-    for (Piece& piece : pieces) {
-        mesh.folded += count_inverted({mesh.vertices, piece.patch.quads}, piece.regions);
-        mesh.parts.push_back({.chart = std::move(piece.chart),
-                              .grid = std::move(piece.grid),
-                              .quads = std::move(piece.patch.quads),
-                              .surface_area = std::move(piece.regions.area)});
-    }
+    add_parts(mesh, std::move(pieces), options);
     check_whole(plan, shared, mesh);
     return mesh;
 }
@@ -179,15 +122,9 @@ RectangleWish wish_of(const Foliation& foliation, const GridOptions& options, do
     RectangleWish wish;
     wish.cells = area / (options.strip_width_mm * options.strip_width_mm);
     wish.parity = options.parity;
-    wish.counts.assign(foliation.cylinders.size(), options.all);
-    wish.paths.assign(foliation.cylinders.size(), "grid");
-    for (std::size_t c = 0; c < options.per_cylinder.size(); ++c) {
-        const RowsCols& own = options.per_cylinder[c];
-        if (own.rows || own.cols) {
-            wish.counts[c] = own;
-            wish.paths[c] = fmt::format("grid.cylinders[{}]", c);
-        }
-    }
+    FixedCounts fixed = fixed_counts(options, foliation.cylinders.size());
+    wish.counts = std::move(fixed.counts);
+    wish.paths = std::move(fixed.paths);
     return wish;
 }
 
