@@ -8,13 +8,17 @@
 
 #include <Eigen/Core>
 
-#include "fab/cut_program.h"
+#include "fab/cut/cut_program.h"
 #include "fab/job_params.h"
 #include "fab/layout.h"
-#include "fab/material.h"
+#include "fab/material/bill.h"
+#include "fab/material/material.h"
 #include "fab/parts.h"
-#include "fab/strip.h"
-#include "fab/weave.h"
+#include "fab/strips/crossings.h"
+#include "fab/strips/strip.h"
+#include "fab/weave/assembly.h"
+#include "fab/weave/weave.h"
+#include "fab/weave/woven_model.h"
 #include "geometry/foliation.h"
 #include "geometry/leaves.h"
 #include "geometry/quads/quality.h"
@@ -70,6 +74,10 @@ struct JobResult {
     std::vector<Strip> strips;
     std::vector<Piece> pieces;
     Weave weave;
+    Crossings crossings;
+    Assembly assembly;
+    WovenModel woven;
+    Bill bill;
     Material weft;
     Material warp;
     Layout layout;

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "fab/material.h"
-#include "fab/strip.h"
+#include "fab/material/material.h"
+#include "fab/strips/strip.h"
 
 namespace leafcutter::fab {
 

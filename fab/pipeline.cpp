@@ -7,18 +7,19 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "fab/certificate.h"
+#include "fab/cut/certificate.h"
+#include "fab/cut/toolpath.h"
 #include "fab/even_cells.h"
 #include "fab/export/formats.h"
-#include "fab/family_nest.h"
 #include "fab/foliation_options.h"
 #include "fab/job_result.h"
-#include "fab/package_files.h"
-#include "fab/strips.h"
-#include "fab/toolpath.h"
+#include "fab/nest/family_nest.h"
+#include "fab/package/package_files.h"
+#include "fab/strips/marks.h"
+#include "fab/strips/strips.h"
 #include "fab/utf8.h"
 #include "fab/warnings.h"
-#include "fab/weave.h"
+#include "fab/weave/weave.h"
 #include "geometry/closest_point.h"
 #include "geometry/error.h"
 #include "geometry/foliation.h"
@@ -283,15 +284,18 @@ private:
         const std::array limits = {limits_of(result_.weft), limits_of(result_.warp)};
         result_.strips = make_strips(result_.quads, fit.columns);
         result_.weave = weave_cells(result_.quads, result_.params.weave);
+        result_.crossings = crossings_of(result_.strips, result_.weave);
         for (std::size_t i = 0; i < result_.strips.size(); ++i) {
             Strip& strip = result_.strips[i];
             const PieceLimits& limit = limits[strip.family == Family::Weft ? 0 : 1];
-            for (Piece& piece : make_pieces(strip, result_.quads, fit, limit, warnings_)) {
+            const PieceRules rules{fit, limit, result_.crossings[i]};
+            for (Piece& piece : make_pieces(strip, result_.quads, rules, warnings_)) {
                 result_.pieces.push_back(std::move(piece));
             }
             context.report(kStrips.name,
                            static_cast<double>(i + 1) / static_cast<double>(result_.strips.size()));
         }
+        mark_pieces(result_.pieces, result_.strips, result_.crossings, fit, warnings_);
         if (!result_.weave.seams.empty()) {
             warnings_.push_back(
                 fmt::format("the pattern breaks between {} pairs of neighbouring cells",

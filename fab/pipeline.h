@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "fab/cut_program.h"
+#include "fab/cut/cut_program.h"
 #include "fab/job_params.h"
-#include "fab/material.h"
-#include "fab/package.h"
+#include "fab/material/material.h"
+#include "fab/package/package.h"
 #include "geometry/context.h"
 #include "geometry/repair.h"
 #include "geometry/topology.h"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fab/audit.h"
+#include "fab/cut/audit.h"
 
 namespace leafcutter::server {
 

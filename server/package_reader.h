@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fab/layout.h"
-#include "fab/strip.h"
+#include "fab/strips/strip.h"
 
 namespace leafcutter::server {
 

@@ -14,7 +14,7 @@ MODULES = {
 
 # Header (regular expression) -> files (regular expressions) that may include it.
 PINNED = {
-    r"nlohmann/.*": [r"fab/package[^/]*\.cpp", r"fab/guide\.cpp", r"fab/nest/instance_io\.cpp", r"server/.*"],
+    r"nlohmann/.*": [r"fab/package/.*\.cpp", r"fab/nest/instance_io\.cpp", r"server/.*"],
     r"httplib\.h": [r"server/http/edge\.(h|cpp)", r"server/cli/.*\.cpp"],
     r"SQLiteCpp/.*|sqlite3\.h": [r"server/store/.*\.cpp"],
     r"CLI/.*": [r"server/cli/.*\.cpp", r"server/main\.cpp"],
@@ -22,6 +22,7 @@ PINNED = {
     r"toml\+\+/.*|toml\.hpp": [r"server/config\.cpp"],
     r"cholmod\.h|Eigen/(CholmodSupport|SparseCholesky)": [r"geometry/sparse_solver\.cpp"],
     r"polyclipping/.*": [r"fab/.*\.cpp"],
+    r"hpdf\.h": [r"fab/guide/pdf\.cpp"],
     r"OpenMesh/.*": [r"geometry/mesh\.h"],
     r"termios\.h|asm/termbits\.h|sys/ioctl\.h|pty\.h": [r"drivers/.*", r"server/cli/.*"],
     r"sys/socket\.h|netdb\.h|arpa/inet\.h": [r"drivers/.*", r"server/.*"],

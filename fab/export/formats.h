@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fab/cut_program.h"
+#include "fab/cut/cut_program.h"
 #include "fab/job_params.h"
 
 namespace leafcutter::fab {

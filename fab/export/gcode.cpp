@@ -13,9 +13,9 @@
 
 #include <fmt/format.h>
 
+#include "fab/cut/motion.h"
 #include "fab/export/formats.h"
 #include "fab/export/number.h"
-#include "fab/motion.h"
 #include "geometry/error.h"
 
 namespace leafcutter::fab {

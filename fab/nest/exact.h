@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fab/strip.h"
+#include "fab/strips/strip.h"
 
 namespace leafcutter::fab {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "fab/strip.h"
+#include "fab/strips/strip.h"
 
 namespace leafcutter::fab {
 

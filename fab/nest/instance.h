@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fab/nest/compaction.h"
-#include "fab/strip.h"
+#include "fab/strips/strip.h"
 #include "geometry/context.h"
 
 namespace leafcutter::fab {

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "fab/strip.h"
+#include "fab/strips/strip.h"
 
 namespace leafcutter::fab {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fab/strip.h"
+#include "fab/strips/strip.h"
 
 namespace leafcutter::fab {
 

@@ -14,9 +14,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "fab/audit.h"
-#include "fab/material.h"
-#include "fab/toolpath.h"
+#include "fab/cut/audit.h"
+#include "fab/cut/toolpath.h"
+#include "fab/material/material.h"
 #include "server/burn_log.h"
 #include "server/cli/command.h"
 #include "server/cli/input_file.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "fab/package.h"
+#include "fab/package/package.h"
 
 namespace leafcutter::server {
 

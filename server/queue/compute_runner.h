@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "fab/package.h"
+#include "fab/package/package.h"
 #include "geometry/context.h"
 #include "server/store/store.h"
 

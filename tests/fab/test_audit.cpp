@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fab/audit.h"
+#include "fab/cut/audit.h"
 #include "fab/export/formats.h"
 #include "geometry/error.h"
 

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "fab/cut_order.h"
+#include "fab/cut/cut_order.h"
+#include "fab/cut/point_grid.h"
 #include "fab/nest/collision.h"
-#include "fab/point_grid.h"
 
 namespace leafcutter::fab {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fab/labels.h"
+#include "fab/strips/labels.h"
 
 namespace leafcutter::fab {
 namespace {

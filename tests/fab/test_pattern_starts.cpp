@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fab/pattern_starts.h"
+#include "fab/weave/pattern_starts.h"
 
 namespace leafcutter::fab {
 namespace {

@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "fab/labels.h"
-#include "fab/overlap.h"
-#include "fab/split.h"
-#include "fab/strips.h"
+#include "fab/strips/labels.h"
+#include "fab/strips/marks.h"
+#include "fab/strips/overlap.h"
+#include "fab/strips/split.h"
+#include "fab/strips/strips.h"
 #include "tests/support/quad_grids.h"
 
 namespace leafcutter::fab {
@@ -27,11 +28,14 @@ Made make(const geometry::QuadMesh& mesh,
           const PieceLimits& limits = kLimits) {
     Made made;
     made.strips = make_strips(mesh, ColumnRuns::PerCylinder);
-    for (Strip& strip : made.strips) {
-        for (Piece& piece : make_pieces(strip, mesh, fit, limits, made.warnings)) {
+    const Crossings crossings = crossings_of(made.strips, weave_cells(mesh, {}));
+    for (std::size_t i = 0; i < made.strips.size(); ++i) {
+        const PieceRules rules{fit, limits, crossings[i]};
+        for (Piece& piece : make_pieces(made.strips[i], mesh, rules, made.warnings)) {
             made.pieces.push_back(std::move(piece));
         }
     }
+    mark_pieces(made.pieces, made.strips, crossings, fit, made.warnings);
     return made;
 }
 

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "fab/estimate.h"
-#include "fab/motion.h"
+#include "fab/cut/estimate.h"
+#include "fab/cut/motion.h"
+#include "fab/cut/toolpath.h"
 #include "fab/nest/collision.h"
 #include "fab/nest/shape.h"
-#include "fab/toolpath.h"
 #include "geometry/error.h"
 
 namespace leafcutter::fab {

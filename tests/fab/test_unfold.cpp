@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "fab/strips.h"
-#include "fab/unfold.h"
+#include "fab/strips/strips.h"
+#include "fab/strips/unfold.h"
 #include "tests/support/quad_grids.h"
 
 namespace leafcutter::fab {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fab/weave.h"
+#include "fab/weave/weave.h"
 #include "tests/support/quad_grids.h"
 
 namespace leafcutter::fab {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fab/material.h"
+#include "fab/material/material.h"
 #include "server/http/api/handlers.h"
 #include "server/http/api/lookup.h"
 #include "server/http/api/views.h"

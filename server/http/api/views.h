@@ -10,7 +10,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "fab/material.h"
+#include "fab/material/material.h"
 #include "server/http/event_hub.h"
 #include "server/queue/device_runner.h"
 #include "server/store/records.h"

@@ -1,0 +1,188 @@
+#include "fab/cut/toolpath.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <polyclipping/clipper.hpp>
+
+#include "fab/cut/cut_order.h"
+#include "fab/cut/estimate.h"
+#include "fab/nest/shape.h"
+#include "fab/strips/labels.h"
+#include "geometry/error.h"
+
+namespace leafcutter::fab {
+
+namespace {
+
+constexpr double kUnitsPerMm = 1e6;  // The offset is computed in whole nanometres.
+
+ClipperLib::Path to_units(const Ring& ring) {
+    ClipperLib::Path path;
+    path.reserve(ring.size());
+    for (const Eigen::Vector2d& point : ring) {
+        path.emplace_back(std::llround(point.x() * kUnitsPerMm),
+                          std::llround(point.y() * kUnitsPerMm));
+    }
+    return path;
+}
+
+Polyline closed_path(const ClipperLib::Path& path) {
+    Polyline points;
+    points.reserve(path.size() + 1);
+    for (const ClipperLib::IntPoint& point : path) {
+        points.emplace_back(static_cast<double>(point.X) / kUnitsPerMm,
+                            static_cast<double>(point.Y) / kUnitsPerMm);
+    }
+    points.push_back(points.front());
+    return points;
+}
+
+// The paths of the beam's centre that leave `outline` whole. A gap narrower than the kerf closes
+// and leaves a hole with a path of its own.
+std::vector<Polyline> kerf_paths(Ring outline, double kerf_mm) {
+    if (signed_area(outline) < 0.0) {
+        std::reverse(outline.begin(), outline.end());  // A mirrored piece.
+    }
+    if (kerf_mm <= 0.0) {
+        outline.push_back(outline.front());
+        return {outline};
+    }
+    // Corners sharper than 60 degrees are cut off square at half the kerf instead of running out.
+    constexpr double kMitreLimit = 2.0;
+    ClipperLib::ClipperOffset offset(kMitreLimit);
+    offset.AddPath(to_units(outline), ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
+    ClipperLib::Paths grown;
+    offset.Execute(grown, kerf_mm / 2.0 * kUnitsPerMm);
+    std::vector<Polyline> paths;
+    for (const ClipperLib::Path& path : grown) {
+        paths.push_back(closed_path(path));
+    }
+    return paths;
+}
+
+using PathKey = std::vector<std::pair<std::int64_t, std::int64_t>>;
+
+// The same for a path and its reverse, to a micrometre.
+PathKey key_of(const Polyline& points) {
+    PathKey key;
+    for (const Eigen::Vector2d& point : points) {
+        key.emplace_back(std::llround(point.x() * 1e3), std::llround(point.y() * 1e3));
+    }
+    PathKey reversed(key.rbegin(), key.rend());
+    return std::min(key, reversed);
+}
+
+class PathCollector {
+public:
+    // Repeated points are dropped, and paths that were there before.
+    void add(Operation operation, const Polyline& points, const std::string& piece) {
+        constexpr double kSamePointMm = 5e-4;
+        Polyline kept;
+        for (const Eigen::Vector2d& point : points) {
+            if (kept.empty() || (point - kept.back()).norm() > kSamePointMm) {
+                kept.push_back(point);
+            }
+        }
+        if (points.size() > 2 && points.front() == points.back() && !kept.empty()) {
+            kept.back() = kept.front();
+        }
+        std::vector<CutPath>& paths = paths_[static_cast<std::size_t>(operation)];
+        if (kept.size() > 1 && seen_.emplace(operation, key_of(kept)).second) {
+            paths.push_back({operation, std::move(kept), piece});
+        }
+    }
+
+    std::vector<CutPath> take(Operation operation) {
+        return std::move(paths_[static_cast<std::size_t>(operation)]);
+    }
+
+private:
+    std::array<std::vector<CutPath>, 3> paths_;
+    std::set<std::pair<Operation, PathKey>> seen_;
+};
+
+Polyline placed(const Polyline& points, const Placement& placement) {
+    Polyline out;
+    out.reserve(points.size());
+    for (const Eigen::Vector2d& point : points) {
+        out.push_back(placement.apply(point));
+    }
+    return out;
+}
+
+void add_piece(const Piece& piece,
+               const Placement& placement,
+               double kerf_mm,
+               PathCollector& collector) {
+    for (const Mark& mark : piece.marks) {
+        if (!mark.path.empty()) {
+            collector.add(mark.operation, placed(mark.path, placement), piece.id);
+        }
+        if (!mark.text.empty()) {
+            for (const Polyline& stroke : mark_strokes(mark)) {
+                collector.add(mark.operation, placed(stroke, placement), piece.id);
+            }
+        }
+    }
+    for (const Polyline& path : kerf_paths(placed(piece.outline, placement), kerf_mm)) {
+        collector.add(Operation::Cut, path, piece.id);
+    }
+}
+
+std::map<std::string_view, const Piece*> by_id(std::span<const Piece> pieces) {
+    std::map<std::string_view, const Piece*> index;
+    for (const Piece& piece : pieces) {
+        index.emplace(piece.id, &piece);
+    }
+    return index;
+}
+
+}  // namespace
+
+CutProgram plan_sheet(const Sheet& sheet,
+                      std::span<const Piece> pieces,
+                      const Material& material,
+                      const MachineProfile& machine,
+                      const geometry::Context& context) {
+    CutProgram program;
+    program.sheet = sheet.id;
+    program.material = material.id;
+    program.size = sheet.size;
+    program.cut = material.cut;
+    program.score = material.score;
+    program.engrave = material.engrave;
+
+    const std::map<std::string_view, const Piece*> index = by_id(pieces);
+    PathCollector collector;
+    for (const Placement& placement : sheet.placements) {
+        const auto piece = index.find(placement.piece);
+        if (piece == index.end()) {
+            throw geometry::Error(
+                geometry::ErrorKind::BadOption, "unknown-piece",
+                fmt::format("sheet {}: there is no piece {} to cut", sheet.id, placement.piece));
+        }
+        add_piece(*piece->second, placement, material.kerf_mm, collector);
+    }
+    Eigen::Vector2d at = Eigen::Vector2d::Zero();
+    for (const Operation operation : {Operation::Engrave, Operation::Score, Operation::Cut}) {
+        for (CutPath& path : order_paths(collector.take(operation), at, context)) {
+            at = path.points.back();
+            program.paths.push_back(std::move(path));
+        }
+    }
+    const CutEstimate estimate = estimate_cut(program, machine);
+    program.burn_mm = estimate.burn_mm;
+    program.travel_mm = estimate.travel_mm;
+    program.estimated_s = estimate.seconds;
+    return program;
+}
+
+}  // namespace leafcutter::fab

@@ -1,0 +1,28 @@
+// Bill of materials: what a job takes of each material, and what that costs.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace leafcutter::fab {
+
+struct BillLine {
+    std::string material;  // Id.
+    int sheets = 0;
+    double strips_area_mm2 = 0.0;  // Of the outlines.
+    double sheets_area_mm2 = 0.0;
+    double weight_g = 0.0;  // Of the strips.
+    double engrave_mm = 0.0;
+    double score_mm = 0.0;
+    double cut_mm = 0.0;
+    double machine_s = 0.0;
+    double cost = 0.0;  // Of the sheets, in the material's currency; 0 if no price is known.
+    std::string currency;
+};
+
+struct Bill {
+    std::vector<BillLine> lines;  // Materials in the order of weft, warp.
+};
+
+}  // namespace leafcutter::fab

@@ -1,0 +1,157 @@
+// The package's strips, weave and layout: strips.json, weave.json, layout.json.
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "fab/package/package_files.h"
+
+namespace leafcutter::fab {
+
+namespace {
+
+using nlohmann::json;
+
+json point_json(const Eigen::Vector2d& point) {
+    return {point.x(), point.y()};
+}
+
+json points_json(const Polyline& points) {
+    json result = json::array();
+    for (const Eigen::Vector2d& point : points) {
+        result.push_back(point_json(point));
+    }
+    return result;
+}
+
+const char* name_of(Family family) {
+    return family == Family::Weft ? "weft" : "warp";
+}
+
+const char* name_of(Bend bend) {
+    switch (bend) {
+        case Bend::Ac:
+            return "ac";
+        case Bend::Bd:
+            return "bd";
+        case Bend::None:
+            break;
+    }
+    return "none";
+}
+
+json mark_json(const Mark& mark) {
+    json result = {{"kind", mark.operation == Operation::Score ? "score" : "engrave"}};
+    if (mark.text.empty()) {
+        result["path"] = points_json(mark.path);
+    } else {
+        result["text"] = mark.text;
+        result["at"] = point_json(mark.at);
+        result["angle_deg"] = mark.angle_deg;
+        result["height_mm"] = mark.height_mm;
+    }
+    return result;
+}
+
+json piece_json(const Piece& piece) {
+    json bend = json::array();
+    for (const Bend cell : piece.bend) {
+        bend.push_back(name_of(cell));
+    }
+    json marks = json::array();
+    for (const Mark& mark : piece.marks) {
+        marks.push_back(mark_json(mark));
+    }
+    return {{"id", piece.id},
+            {"strip", piece.strip},
+            {"family", name_of(piece.family)},
+            {"first_cell", piece.first_cell},
+            {"cell_count", piece.cell_count},
+            {"left", points_json(piece.left)},
+            {"right", points_json(piece.right)},
+            {"bend", std::move(bend)},
+            {"outline", points_json(piece.outline)},
+            {"marks", std::move(marks)}};
+}
+
+json pattern_json(const WeaveParams& weave) {
+    switch (weave.pattern) {
+        case WeavePattern::Plain:
+            return "plain";
+        case WeavePattern::Twill2x2:
+            return "twill-2x2";
+        case WeavePattern::DoubleWarp:
+            return "double-warp";
+        case WeavePattern::DoubleWeft:
+            return "double-weft";
+        case WeavePattern::Satin5:
+            return "satin-5";
+        case WeavePattern::Basket2x2:
+            return "basket-2x2";
+        case WeavePattern::Matrix:
+            break;
+    }
+    return weave.matrix;
+}
+
+json sheet_json(const Sheet& sheet) {
+    json placements = json::array();
+    for (const Placement& placement : sheet.placements) {
+        placements.push_back({{"piece", placement.piece},
+                              {"x_mm", placement.x_mm},
+                              {"y_mm", placement.y_mm},
+                              {"rotation_deg", placement.rotation_deg},
+                              {"mirrored", placement.mirrored}});
+    }
+    return {{"id", sheet.id},
+            {"material", sheet.material},
+            {"family", sheet.family},
+            {"width_mm", sheet.size.width_mm},
+            {"height_mm", sheet.size.height_mm},
+            {"placements", std::move(placements)}};
+}
+
+}  // namespace
+
+std::string strips_json(const JobResult& job) {
+    json strips = json::array();
+    for (const Strip& strip : job.strips) {
+        strips.push_back({{"id", strip.id},
+                          {"family", name_of(strip.family)},
+                          {"cylinders", strip.cylinders},
+                          {"closed", strip.closed},
+                          {"quads", strip.quads},
+                          {"pieces", strip.pieces}});
+    }
+    json pieces = json::array();
+    for (const Piece& piece : job.pieces) {
+        pieces.push_back(piece_json(piece));
+    }
+    const json file = {{"format", "leafcutter-strips/1"},
+                       {"strips", std::move(strips)},
+                       {"pieces", std::move(pieces)}};
+    return file.dump() + "\n";
+}
+
+std::string weave_json(const JobResult& job) {
+    const json file = {
+        {"format", "leafcutter-weave/1"},       {"pattern", pattern_json(job.params.weave)},
+        {"warp_on_top", job.weave.warp_on_top}, {"seams", job.weave.seams},
+        {"seam_mm", job.weave.seam_mm},         {"shortest_seam_proven", job.weave.shortest}};
+    return file.dump() + "\n";
+}
+
+std::string layout_json(const JobResult& job) {
+    json sheets = json::array();
+    for (const Sheet& sheet : job.layout.sheets) {
+        sheets.push_back(sheet_json(sheet));
+    }
+    const json file = {{"format", "leafcutter-layout/1"},
+                       {"sheets", std::move(sheets)},
+                       {"density_percent", job.layout.density_percent},
+                       {"smallest_gap_mm", job.layout.smallest_gap_mm},
+                       {"unplaced", job.layout.unplaced}};
+    return file.dump() + "\n";
+}
+
+}  // namespace leafcutter::fab
