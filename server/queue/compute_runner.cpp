@@ -1,7 +1,9 @@
 #include "server/queue/compute_runner.h"
 
 #include <algorithm>
+#include <array>
 #include <new>
+#include <string_view>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -31,20 +33,24 @@ std::string_view name_of(geometry::ErrorKind kind) {
 }
 
 std::string media_type_of(std::string_view path) {
-    const auto ends = [path](std::string_view ending) { return path.ends_with(ending); };
-    if (ends(".json")) {
-        return "application/json";
-    }
-    if (ends(".svg")) {
-        return "image/svg+xml";
-    }
-    if (ends(".html")) {
-        return "text/html; charset=utf-8";
-    }
-    if (ends(".gcode")) {
-        return "text/x-gcode";
-    }
-    return ends(".obj") ? "model/obj" : ends(".dxf") ? "image/vnd.dxf" : "application/octet-stream";
+    using Type = std::pair<std::string_view, std::string_view>;
+    constexpr std::array kTypes = {
+        Type{".json", "application/json"},
+        Type{".svg", "image/svg+xml"},
+        Type{".html", "text/html; charset=utf-8"},
+        Type{".pdf", "application/pdf"},
+        Type{".csv", "text/csv; charset=utf-8"},
+        Type{".gcode", "text/x-gcode"},
+        Type{".dxf", "image/vnd.dxf"},
+        Type{".obj", "model/obj"},
+        Type{".mtl", "model/mtl"},
+        Type{".stl", "model/stl"},
+        Type{".glb", "model/gltf-binary"},
+    };
+    const auto* const known = std::find_if(kTypes.begin(), kTypes.end(), [path](const Type& type) {
+        return path.ends_with(type.first);
+    });
+    return std::string(known == kTypes.end() ? "application/octet-stream" : known->second);
 }
 
 double seconds_since_start() {

@@ -237,6 +237,13 @@ export const en = {
     all: 'Everything (zip)',
     about: {
       'guide.html': 'Assembly guide',
+      'guide.pdf': 'Assembly guide, to print',
+      'bill.csv': 'Bill of materials',
+      'strips.svg': 'All pieces, for scissors',
+      'woven.glb': 'Woven model (glTF)',
+      'woven.obj': 'Woven model (OBJ)',
+      'woven.mtl': 'Colours of the OBJ model',
+      'woven.stl': 'Woven model (STL)',
       'report.json': 'Report',
       'surface.ply': 'Surface',
       'quads.obj': 'Quad mesh',
