@@ -68,11 +68,16 @@ struct WeaveParams {
 enum class ColumnRuns { PerCylinder, Through };
 enum class CellMarks { Ticks, Lines, None };
 
+// How pieces are joined end to end. Glue: a tab of `tab_mm` under the next piece. Cell: the tab is
+// a whole cell. Slot: an arrow put through a slit in the next piece, which holds without glue.
+enum class Joint { Glue, Cell, Slot };
+
 struct FitParams {
     ColumnRuns columns = ColumnRuns::PerCylinder;
     double clearance_mm = 0.2;  // Taken off each long side of a strip.
     bool crimp = true;          // Lengthen cells for the way over and under crossing strips.
-    double tab_mm = 8.0;        // Length of glue tabs.
+    Joint joint = Joint::Glue;
+    double tab_mm = 8.0;  // Length of glue tabs.
     double max_piece_mm = 900.0;
     bool labels = true;
     CellMarks cell_marks = CellMarks::Ticks;
@@ -98,6 +103,7 @@ enum class Dialect { Grbl, Marlin, Smoothie };
 struct OutputParams {
     Dialect dialect = Dialect::Grbl;
     std::string device;
+    std::string machine;  // Of the materials' settings; empty: their defaults.
 };
 
 struct JobParams {

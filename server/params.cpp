@@ -109,6 +109,7 @@ void read_weave(ObjectReader& reader, fab::WeaveParams& weave) {
 
 void read_fit(ObjectReader& reader, fab::FitParams& fit) {
     read_choice(reader, "columns", fit.columns, kColumnRuns);
+    read_choice(reader, "joint", fit.joint, kJoint);
     reader.number("clearance_mm", fit.clearance_mm, kLength);
     reader.boolean("crimp", fit.crimp);
     reader.number("tab_mm", fit.tab_mm, kLength);
@@ -135,6 +136,7 @@ void read_nesting(ObjectReader& reader, fab::NestingParams& nesting) {
 void read_output(ObjectReader& reader, fab::OutputParams& output) {
     read_choice(reader, "dialect", output.dialect, kDialects);
     reader.text("device", output.device);
+    reader.text("machine", output.machine);
 }
 
 }  // namespace

@@ -74,6 +74,11 @@ inline constexpr ObjectReader::Choice<fab::ColumnRuns> kColumnRuns[] = {
     {"per-cylinder", fab::ColumnRuns::PerCylinder},
     {"through", fab::ColumnRuns::Through},
 };
+inline constexpr ObjectReader::Choice<fab::Joint> kJoint[] = {
+    {"glue", fab::Joint::Glue},
+    {"cell", fab::Joint::Cell},
+    {"slot", fab::Joint::Slot},
+};
 inline constexpr ObjectReader::Choice<fab::CellMarks> kCellMarks[] = {
     {"ticks", fab::CellMarks::Ticks},
     {"lines", fab::CellMarks::Lines},

@@ -101,6 +101,7 @@ json params_to_json(const fab::JobParams& params) {
         result["weave"]["pattern"] = name_of(kPatterns, params.weave.pattern);
     }
     result["fit"] = {{"columns", name_of(kColumnRuns, params.fit.columns)},
+                     {"joint", name_of(kJoint, params.fit.joint)},
                      {"clearance_mm", params.fit.clearance_mm},
                      {"crimp", params.fit.crimp},
                      {"tab_mm", params.fit.tab_mm},
@@ -114,7 +115,8 @@ json params_to_json(const fab::JobParams& params) {
                          {"rotation", name_of(kRotations, params.nesting.rotation)},
                          {"seed", params.nesting.seed}};
     result["output"] = {{"dialect", name_of(kDialects, params.output.dialect)},
-                        {"device", params.output.device}};
+                        {"device", params.output.device},
+                        {"machine", params.output.machine}};
     return result;
 }
 

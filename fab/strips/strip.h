@@ -46,8 +46,10 @@ struct Mark {
 
 // Material past an end of a piece that is joined to another.
 struct Tab {
-    double length_mm = 0.0;  // 0: there is none.
-    std::string onto;        // The piece that it is joined to.
+    double length_mm = 0.0;      // 0: there is none.
+    std::string onto;            // The piece that it is joined to; empty: several, or not known.
+    double slit_at_mm = 0.0;     // Joint::Slot: how far behind the joint its slit lies there,
+    double slit_width_mm = 0.0;  // and how wide; 0: it is glued.
 };
 
 struct Piece {
@@ -66,7 +68,8 @@ struct Piece {
     Ring outline;                  // What is cut, before kerf: with clearance, crimp, tabs.
     Polyline cut_left;             // The rung ends as they come to lie on the outline.
     Polyline cut_right;
-    std::vector<Mark> marks;  // Inside the outline.
+    std::vector<Mark> marks;     // Inside the outline.
+    std::vector<Polyline> cuts;  // Slits inside it: the beam's way, kerf counted.
 };
 
 }  // namespace leafcutter::fab

@@ -22,8 +22,10 @@ struct PieceLimits {
     SheetSize usable_sheet;  // A piece's outline must fit into it at some rotation.
     double thickness_mm = 0.2;
     double min_width_mm = 1.0;
+    double min_length_mm = 0.0;          // Of a piece, along its middle.
     Rotation rotation = Rotation::Free;  // The rotations that may make it fit.
     double self_gap_mm = 0.5;            // Distant parts of an outline stay this far apart.
+    double kerf_mm = 0.1;
 };
 
 struct PieceRules {

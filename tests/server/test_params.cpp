@@ -43,11 +43,12 @@ TEST(Params, TakeEveryKeyOfTheDocumentation) {
                  "planar": "off", "even_cells": false},
         "weave": {"pattern": [[0, 1, 1], [1, 0, 0]]},
         "fit": {"columns": "through", "clearance_mm": 0, "crimp": false, "tab_mm": 0,
-                "max_piece_mm": 500, "labels": false, "cell_marks": "lines"},
+                "max_piece_mm": 500, "labels": false, "cell_marks": "lines",
+                "joint": "slot"},
         "material": {"warp": "felt-1", "weft": "card-300"},
         "nesting": {"time_s": 2.5, "spacing_mm": 0, "margin_mm": 3, "rotation": "0,90,180,270",
                     "seed": 9},
-        "output": {"dialect": "marlin", "device": "big one"}})"));
+        "output": {"dialect": "marlin", "device": "big one", "machine": "co2-40w"}})"));
     EXPECT_FALSE(params.scale.longest_side_mm);
     EXPECT_EQ(params.foliation.mode, geometry::FoliationMode::Disk);
     EXPECT_EQ(params.foliation.corners, (std::array<int, 4>{3, 1, 4, 15}));
@@ -57,9 +58,11 @@ TEST(Params, TakeEveryKeyOfTheDocumentation) {
     EXPECT_EQ(params.weave.matrix, (std::vector<std::vector<int>>{{0, 1, 1}, {1, 0, 0}}));
     EXPECT_EQ(params.fit.columns, fab::ColumnRuns::Through);
     EXPECT_EQ(params.fit.cell_marks, fab::CellMarks::Lines);
+    EXPECT_EQ(params.fit.joint, fab::Joint::Slot);
     EXPECT_EQ(params.nesting.rotation, fab::Rotation::Quarter);
     EXPECT_EQ(params.nesting.seed, 9U);
     EXPECT_EQ(params.output.dialect, fab::Dialect::Marlin);
+    EXPECT_EQ(params.output.machine, "co2-40w");
 }
 
 TEST(Params, ComeBackFromTheirJson) {
