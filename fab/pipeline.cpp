@@ -91,8 +91,11 @@ public:
     Job(const JobParams& params, const PipelineOptions& options, const Context& context)
         : options_(options), context_(context) {
         result_.params = params;
-        result_.weft = material_named(options.materials, params.material.weft, "material.weft");
-        result_.warp = material_named(options.materials, params.material.warp, "material.warp");
+        const auto material = [&](const std::string& id, const char* path) {
+            return on_machine(material_named(options.materials, id, path), params.output.machine);
+        };
+        result_.weft = material(params.material.weft, "material.weft");
+        result_.warp = material(params.material.warp, "material.warp");
         usable_sheet(result_.weft, params.nesting);
         usable_sheet(result_.warp, params.nesting);
     }
@@ -274,6 +277,7 @@ private:
         limits.usable_sheet = usable_sheet(material, result_.params.nesting);
         limits.thickness_mm = material.thickness_mm;
         limits.min_width_mm = material.min_strip_width_mm;
+        limits.min_length_mm = material.min_length_mm;
         limits.rotation = result_.params.nesting.rotation;
         limits.self_gap_mm = material.kerf_mm + kSelfGapMm;
         return limits;

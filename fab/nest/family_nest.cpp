@@ -86,7 +86,7 @@ SheetSize usable_sheet(const Material& material, const NestingParams& params) {
         throw geometry::Error(geometry::ErrorKind::BadOption, "no-sheet",
                               fmt::format("material {}: has no sheets", material.id));
     }
-    const SheetSize& sheet = material.sheets.front();
+    const SheetSize& sheet = material.sheets.front().size;
     const double edge = 2.0 * params.margin_mm + material.kerf_mm;
     const SheetSize usable{sheet.width_mm - edge, sheet.height_mm - edge};
     if (!(usable.width_mm > 0.0) || !(usable.height_mm > 0.0)) {
@@ -124,7 +124,7 @@ Layout nest_families(std::span<const Piece> pieces,
         part.progress = [&](std::string_view stage, double fraction) {
             context.report(stage, done + share * fraction);
         };
-        append(whole, nest(batch.pieces, batch.material.sheets.front(), options, part), batch);
+        append(whole, nest(batch.pieces, batch.material.sheets.front().size, options, part), batch);
         done += share;
         context.check();  // A stopped search returns its best so far; here a stop is a stop.
     }

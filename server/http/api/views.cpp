@@ -203,8 +203,8 @@ json device_json(const DeviceRunner& runner) {
 
 json material_json(const fab::Material& material) {
     json sheets = json::array();
-    for (const fab::SheetSize& sheet : material.sheets) {
-        sheets.push_back({{"width_mm", sheet.width_mm}, {"height_mm", sheet.height_mm}});
+    for (const fab::StockSheet& sheet : material.sheets) {
+        sheets.push_back({{"width_mm", sheet.size.width_mm}, {"height_mm", sheet.size.height_mm}});
     }
     return {{"id", material.id},
             {"name", material.name},
