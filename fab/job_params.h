@@ -81,6 +81,9 @@ struct FitParams {
     double max_piece_mm = 900.0;
     bool labels = true;
     CellMarks cell_marks = CellMarks::Ticks;
+    bool weave_marks = true;  // A bar on every cell that lies under its crossing strip.
+    double score_deg = 15.0;  // Cells that bend further are scored on their diagonal.
+    double text_mm = 4.0;     // Largest height of engraved text.
 };
 
 struct MaterialParams {

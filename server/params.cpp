@@ -116,6 +116,9 @@ void read_fit(ObjectReader& reader, fab::FitParams& fit) {
     reader.number("max_piece_mm", fit.max_piece_mm, {0.0, 20'000.0, true});
     reader.boolean("labels", fit.labels);
     read_choice(reader, "cell_marks", fit.cell_marks, kCellMarks);
+    reader.boolean("weave_marks", fit.weave_marks);
+    reader.number("score_deg", fit.score_deg, {0.0, 180.0});
+    reader.number("text_mm", fit.text_mm, {1.0, 100.0});
 }
 
 void read_material(ObjectReader& reader, fab::MaterialParams& material) {

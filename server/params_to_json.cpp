@@ -107,7 +107,10 @@ json params_to_json(const fab::JobParams& params) {
                      {"tab_mm", params.fit.tab_mm},
                      {"max_piece_mm", params.fit.max_piece_mm},
                      {"labels", params.fit.labels},
-                     {"cell_marks", name_of(kCellMarks, params.fit.cell_marks)}};
+                     {"cell_marks", name_of(kCellMarks, params.fit.cell_marks)},
+                     {"weave_marks", params.fit.weave_marks},
+                     {"score_deg", params.fit.score_deg},
+                     {"text_mm", params.fit.text_mm}};
     result["material"] = {{"warp", params.material.warp}, {"weft", params.material.weft}};
     result["nesting"] = {{"time_s", params.nesting.time_s},
                          {"spacing_mm", params.nesting.spacing_mm},

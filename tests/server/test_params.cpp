@@ -44,7 +44,7 @@ TEST(Params, TakeEveryKeyOfTheDocumentation) {
         "weave": {"pattern": [[0, 1, 1], [1, 0, 0]]},
         "fit": {"columns": "through", "clearance_mm": 0, "crimp": false, "tab_mm": 0,
                 "max_piece_mm": 500, "labels": false, "cell_marks": "lines",
-                "joint": "slot"},
+                "joint": "slot", "weave_marks": false, "score_deg": 30, "text_mm": 2.5},
         "material": {"warp": "felt-1", "weft": "card-300"},
         "nesting": {"time_s": 2.5, "spacing_mm": 0, "margin_mm": 3, "rotation": "0,90,180,270",
                     "seed": 9},
@@ -58,6 +58,9 @@ TEST(Params, TakeEveryKeyOfTheDocumentation) {
     EXPECT_EQ(params.weave.matrix, (std::vector<std::vector<int>>{{0, 1, 1}, {1, 0, 0}}));
     EXPECT_EQ(params.fit.columns, fab::ColumnRuns::Through);
     EXPECT_EQ(params.fit.cell_marks, fab::CellMarks::Lines);
+    EXPECT_FALSE(params.fit.weave_marks);
+    EXPECT_EQ(params.fit.score_deg, 30.0);
+    EXPECT_EQ(params.fit.text_mm, 2.5);
     EXPECT_EQ(params.fit.joint, fab::Joint::Slot);
     EXPECT_EQ(params.nesting.rotation, fab::Rotation::Quarter);
     EXPECT_EQ(params.nesting.seed, 9U);
