@@ -1,6 +1,9 @@
 #include "drivers/device.h"
 
-#include "drivers/grbl/device.h"
+#include <algorithm>
+
+#include "drivers/grbl/session.h"
+#include "drivers/session_device.h"
 #include "drivers/sim/sim_transport.h"
 #include "drivers/transport.h"
 
@@ -34,22 +37,40 @@ std::string_view to_string(MachineState state) {
     return "unknown";
 }
 
+namespace {
+
+bool starts_with(std::string_view text, std::string_view start) {
+    return text.substr(0, start.size()) == start;
+}
+
+std::unique_ptr<Device> attached(std::string_view uri,
+                                 std::unique_ptr<Transport> transport,
+                                 const SessionDevice::MakeSession& make_session) {
+    auto device =
+        std::make_unique<SessionDevice>(std::string(uri), std::move(transport), make_session);
+    device->attach();
+    return device;
+}
+
+std::unique_ptr<Session> grbl_session(Session::Time now) {
+    return std::make_unique<GrblSession>(now);
+}
+
+}  // namespace
+
 std::unique_ptr<Device> open_device(std::string_view uri) {
     constexpr std::string_view kGrbl = "grbl:";
     constexpr std::string_view kSimulated = "sim:grbl";
-    std::unique_ptr<Transport> transport;
-    if (uri.substr(0, kGrbl.size()) == kGrbl) {
-        transport = open_transport(uri.substr(kGrbl.size()));
-    } else if (uri == kSimulated || uri.substr(0, kSimulated.size() + 1) == "sim:grbl?") {
-        transport = open_simulated_grbl(uri.substr(std::min(kSimulated.size() + 1, uri.size())));
-    } else {
-        throw std::invalid_argument(
-            "device \"" + std::string(uri) +
-            "\": must be grbl:/dev/PORT?baud=N, grbl:tcp://host:port or sim:grbl");
+    if (starts_with(uri, kGrbl)) {
+        return attached(uri, open_transport(uri.substr(kGrbl.size())), grbl_session);
     }
-    auto device = std::make_unique<GrblDevice>(std::string(uri), std::move(transport));
-    device->attach();
-    return device;
+    if (uri == kSimulated || starts_with(uri, "sim:grbl?")) {
+        const std::string_view query = uri.substr(std::min(kSimulated.size() + 1, uri.size()));
+        return attached(uri, open_simulated_grbl(query), grbl_session);
+    }
+    throw std::invalid_argument(
+        "device \"" + std::string(uri) +
+        "\": must be grbl:/dev/PORT?baud=N, grbl:tcp://host:port or sim:grbl");
 }
 
 }  // namespace leafcutter::drivers

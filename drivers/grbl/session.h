@@ -19,51 +19,42 @@
 #include "drivers/grbl/program.h"
 #include "drivers/grbl/protocol.h"
 #include "drivers/grbl/status_report.h"
+#include "drivers/session.h"
 
 namespace leafcutter::drivers {
 
-class GrblSession {
+class GrblSession final : public Session {
 public:
-    using Time = std::chrono::steady_clock::time_point;
-
     explicit GrblSession(Time now);
 
-    void receive(std::string_view bytes, Time now);
-
-    // Lets what is due happen. Throws LinkLost when the controller has fallen silent.
-    void tick(Time now);
-
-    // The bytes to write now.
-    std::string take_output();
-
-    // Lines received since the last call, for a console view.
-    std::vector<std::string> take_lines();
+    void receive(std::string_view bytes, Time now) override;
+    void tick(Time now) override;
+    std::string take_output() override;
+    std::vector<std::string> take_lines() override;
 
     // Attached, settings known, no halt under way.
     bool ready() const { return phase_ == Phase::Ready && halt_ == Halt::None; }
+    bool attached() const override { return ready() && status_.state != MachineState::Unknown; }
 
     std::size_t bytes_in_flight() const { return protocol_.bytes_in_flight(); }
 
-    // Nothing of ours burns or moves: the link may be closed.
-    bool may_close() const;
+    bool may_close() const override;
 
-    // The commands of Device. Throw Refused.
-    void start(std::string_view program);
-    void hold();
-    void resume();
-    void cancel();
-    void stop();
-    void home();
-    void unlock();
-    void jog(const Jog& jog);
-    void jog_cancel();
-    void console(std::string_view line);
+    void start(std::string_view program) override;
+    void hold() override;
+    void resume() override;
+    void cancel() override;
+    void stop() override;
+    void home() override;
+    void unlock() override;
+    void jog(const Jog& jog) override;
+    void jog_cancel() override;
+    void console(std::string_view line) override;
+    void lose_link(const std::string& reason) override;
+    std::string_view last_words() const override { return "\x18"; }
 
-    // The link is gone: a running job ends as LinkLost.
-    void lose_link(const std::string& reason);
-
-    const DeviceStatus& status() const { return status_; }
-    const JobProgress& progress() const { return progress_; }
+    const DeviceStatus& status() const override { return status_; }
+    const JobProgress& progress() const override { return progress_; }
 
 private:
     enum class Phase { Greeting, Resetting, AskingVersion, AskingSettings, Ready, Gone };

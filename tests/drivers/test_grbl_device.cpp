@@ -10,8 +10,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drivers/grbl/device.h"
+#include "drivers/device.h"
 #include "drivers/sim/sim_host.h"
+#include "drivers/transport.h"
 
 namespace leafcutter::drivers {
 namespace {

@@ -1,4 +1,4 @@
-#include "drivers/grbl/device.h"
+#include "drivers/session_device.h"
 
 #include <algorithm>
 #include <thread>
@@ -17,13 +17,16 @@ constexpr milliseconds kCloseTime{2500};
 
 }  // namespace
 
-GrblDevice::GrblDevice(std::string uri, std::unique_ptr<Transport> transport, Clock clock)
+SessionDevice::SessionDevice(std::string uri,
+                             std::unique_ptr<Transport> transport,
+                             const MakeSession& make_session,
+                             Clock clock)
     : uri_(std::move(uri)),
       transport_(std::move(transport)),
       clock_(std::move(clock)),
-      session_(clock_()) {}
+      session_(make_session(clock_())) {}
 
-GrblDevice::~GrblDevice() {
+SessionDevice::~SessionDevice() {
     try {
         close();
     } catch (const std::exception&) {
@@ -32,11 +35,11 @@ GrblDevice::~GrblDevice() {
     }
 }
 
-void GrblDevice::close() {
+void SessionDevice::close() {
     const auto end = clock_() + kCloseTime;
     const auto at_rest = [this] {
         const std::lock_guard lock(mutex_);
-        return session_.may_close();
+        return session_->may_close();
     };
     if (gone_ || at_rest()) {
         return;
@@ -51,11 +54,11 @@ void GrblDevice::close() {
     }
 }
 
-void GrblDevice::attach() {
+void SessionDevice::attach() {
     const auto end = clock_() + kAttachTime;
     const auto ready = [this] {
         const std::lock_guard lock(mutex_);
-        return session_.ready() && session_.status().state != MachineState::Unknown;
+        return session_->attached();
     };
     while (!ready()) {
         if (clock_() > end) {
@@ -65,86 +68,86 @@ void GrblDevice::attach() {
     }
 }
 
-DeviceStatus GrblDevice::status() const {
+DeviceStatus SessionDevice::status() const {
     const std::lock_guard lock(mutex_);
-    return session_.status();
+    return session_->status();
 }
 
-JobProgress GrblDevice::progress() const {
+JobProgress SessionDevice::progress() const {
     const std::lock_guard lock(mutex_);
-    return session_.progress();
+    return session_->progress();
 }
 
-void GrblDevice::start(std::string program) {
+void SessionDevice::start(std::string program) {
     const std::lock_guard lock(mutex_);
-    session_.start(program);
+    session_->start(program);
 }
 
-void GrblDevice::hold() {
+void SessionDevice::hold() {
     const std::lock_guard lock(mutex_);
-    session_.hold();
+    session_->hold();
 }
 
-void GrblDevice::resume() {
+void SessionDevice::resume() {
     const std::lock_guard lock(mutex_);
-    session_.resume();
+    session_->resume();
 }
 
-void GrblDevice::cancel() {
+void SessionDevice::cancel() {
     const std::lock_guard lock(mutex_);
-    session_.cancel();
+    session_->cancel();
 }
 
-void GrblDevice::stop() {
+void SessionDevice::stop() {
     const std::lock_guard lock(mutex_);
-    session_.stop();
+    session_->stop();
 }
 
-void GrblDevice::home() {
+void SessionDevice::home() {
     const std::lock_guard lock(mutex_);
-    session_.home();
+    session_->home();
 }
 
-void GrblDevice::unlock() {
+void SessionDevice::unlock() {
     const std::lock_guard lock(mutex_);
-    session_.unlock();
+    session_->unlock();
 }
 
-void GrblDevice::jog(const Jog& jog) {
+void SessionDevice::jog(const Jog& jog) {
     const std::lock_guard lock(mutex_);
-    session_.jog(jog);
+    session_->jog(jog);
 }
 
-void GrblDevice::jog_cancel() {
+void SessionDevice::jog_cancel() {
     const std::lock_guard lock(mutex_);
-    session_.jog_cancel();
+    session_->jog_cancel();
 }
 
-void GrblDevice::console(std::string line) {
+void SessionDevice::console(std::string line) {
     const std::lock_guard lock(mutex_);
-    session_.console(line);
+    session_->console(line);
 }
 
-void GrblDevice::write_output() {
+void SessionDevice::write_output() {
     std::string output;
     {
         const std::lock_guard lock(mutex_);
-        output = session_.take_output();
+        output = session_->take_output();
     }
     if (!output.empty()) {
         transport_->write_all(output);
     }
 }
 
-void GrblDevice::turn(milliseconds wait) {
+void SessionDevice::turn(milliseconds wait) {
     write_output();
     const std::string bytes = transport_->read_some(wait);
     std::vector<std::string> lines;
     {
         const std::lock_guard lock(mutex_);
-        session_.receive(bytes, clock_());
-        session_.tick(clock_());
-        lines = session_.take_lines();
+        session_->receive(bytes, clock_());
+        session_->tick(clock_());
+        lines = session_->take_lines();
     }
     write_output();
     if (on_line) {
@@ -154,7 +157,7 @@ void GrblDevice::turn(milliseconds wait) {
     }
 }
 
-void GrblDevice::run_once(milliseconds slice) {
+void SessionDevice::run_once(milliseconds slice) {
     if (gone_) {
         std::this_thread::sleep_for(slice);
         return;
@@ -170,11 +173,11 @@ void GrblDevice::run_once(milliseconds slice) {
     }
 }
 
-void GrblDevice::end_link(std::string reason) {
+void SessionDevice::end_link(std::string reason) {
     gone_ = true;
     try {
         // A controller that only fell silent may still hear; its beam must not outlive us.
-        transport_->write_all("\x18");
+        transport_->write_all(session_->last_words());
     } catch (const LinkLost&) {
         gone_ = true;  // Nobody hears any more.
     }
@@ -184,7 +187,7 @@ void GrblDevice::end_link(std::string reason) {
     }
     {
         const std::lock_guard lock(mutex_);
-        session_.lose_link(reason);
+        session_->lose_link(reason);
     }
     throw LinkLost(reason);
 }

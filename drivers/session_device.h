@@ -1,4 +1,4 @@
-// A Grbl controller on a transport, as a Device.
+// A controller on a transport, as a Device.
 
 #pragma once
 
@@ -9,23 +9,26 @@
 #include <string>
 
 #include "drivers/device.h"
-#include "drivers/grbl/session.h"
+#include "drivers/session.h"
 #include "drivers/transport.h"
 
 namespace leafcutter::drivers {
 
-class GrblDevice final : public Device {
+class SessionDevice final : public Device {
 public:
-    using Clock = std::function<GrblSession::Time()>;
+    using Clock = std::function<Session::Time()>;
 
-    GrblDevice(std::string uri,
-               std::unique_ptr<Transport> transport,
-               Clock clock = std::chrono::steady_clock::now);
-    GrblDevice(const GrblDevice&) = delete;
-    GrblDevice& operator=(const GrblDevice&) = delete;
+    using MakeSession = std::function<std::unique_ptr<Session>(Session::Time now)>;
+
+    SessionDevice(std::string uri,
+                  std::unique_ptr<Transport> transport,
+                  const MakeSession& make_session,
+                  Clock clock = std::chrono::steady_clock::now);
+    SessionDevice(const SessionDevice&) = delete;
+    SessionDevice& operator=(const SessionDevice&) = delete;
 
     // A running job is stopped with the beam off, as far as the link still carries it.
-    ~GrblDevice() override;
+    ~SessionDevice() override;
 
     // Works until the controller has answered who it is. Throws LinkLost if it doesn't.
     void attach();
@@ -54,8 +57,8 @@ private:
     std::string uri_;
     std::unique_ptr<Transport> transport_;  // Of the owner thread alone.
     Clock clock_;
-    mutable std::mutex mutex_;  // Guards session_; never held while waiting.
-    GrblSession session_;
+    mutable std::mutex mutex_;  // Guards *session_; never held while waiting.
+    std::unique_ptr<Session> session_;
     bool gone_ = false;  // Of the owner thread alone.
 };
 
