@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace leafcutter::fab {
 
@@ -10,33 +11,21 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Our own font, on a grid: x from 0, y from 0 (base line) to kCapital. A stroke is a run of points
-// written "xy", strokes are parted by blanks. No stroke lies on another: a laser burns each line
-// once.
-struct Glyph {
-    char letter;
-    int width;
-    std::string_view strokes;
-};
-
-constexpr int kCapital = 6;
-constexpr int kGap = 2;  // Between glyphs.
-
 constexpr std::array kGlyphs = {
-    Glyph{'0', 4, "103041453616050110 1234"},
-    Glyph{'1', 2, "051610 0020"},
+    Glyph{'0', 4, "103041453616050110"},
+    Glyph{'1', 2, "042620"},
     Glyph{'2', 4, "05163645440040"},
-    Glyph{'3', 4, "0516364544334241301001 1333"},
+    Glyph{'3', 4, "064623334241301001"},
     Glyph{'4', 4, "30360242"},
-    Glyph{'5', 4, "460603334241301001"},
-    Glyph{'6', 4, "4536160501103041423303"},
+    Glyph{'5', 4, "4606033342413000"},
+    Glyph{'6', 4, "360200404303"},
     Glyph{'7', 4, "064610"},
-    Glyph{'8', 4, "130405163645443313 1302011030414233"},
-    Glyph{'9', 4, "0110304145361605041343"},
+    Glyph{'8', 4, "103041051636450110"},
+    Glyph{'9', 4, "430306464000"},
     Glyph{'A', 4, "002640 1232"},
     Glyph{'B', 4, "00063645443342413000 0333"},
     Glyph{'C', 4, "4536160501103041"},
-    Glyph{'D', 4, "00062644422000"},
+    Glyph{'D', 5, "000626532000"},
     Glyph{'E', 4, "46060040 0333"},
     Glyph{'F', 4, "460600 0333"},
     Glyph{'G', 4, "45361605011030414323"},
@@ -47,9 +36,9 @@ constexpr std::array kGlyphs = {
     Glyph{'L', 4, "060040"},
     Glyph{'M', 4, "0006234640"},
     Glyph{'N', 4, "00064046"},
-    Glyph{'O', 4, "103041453616050110"},
+    Glyph{'O', 6, "204062644626040220"},
     Glyph{'P', 4, "00063645443303"},
-    Glyph{'Q', 4, "103041453616050110 2240"},
+    Glyph{'Q', 6, "204062644626040220 4260"},
     Glyph{'R', 4, "00063645443303 2340"},
     Glyph{'S', 4, "453616050413334241301001"},
     Glyph{'T', 4, "0646 2026"},
@@ -67,8 +56,8 @@ constexpr std::array kGlyphs = {
     Glyph{'(', 1, "16050110"},
     Glyph{')', 1, "06151100"},
     Glyph{'#', 4, "1016 3036 0242 0444"},
-    Glyph{'<', 3, "350331"},
-    Glyph{'>', 3, "053301"},
+    Glyph{'<', 5, "53033623"},
+    Glyph{'>', 5, "03532623"},
     Glyph{' ', 2, ""},
 };
 
@@ -86,7 +75,14 @@ const Glyph& glyph_of(char letter) {
     return kUnknown;
 }
 
-void add_strokes(const Glyph& glyph, int x, std::vector<Polyline>& strokes) {
+}  // namespace
+
+std::span<const Glyph> font() {
+    return kGlyphs;
+}
+
+std::vector<Polyline> glyph_strokes(const Glyph& glyph) {
+    std::vector<Polyline> strokes;
     bool open = false;
     for (std::size_t i = 0; i < glyph.strokes.size();) {
         if (glyph.strokes[i] == ' ') {
@@ -98,20 +94,23 @@ void add_strokes(const Glyph& glyph, int x, std::vector<Polyline>& strokes) {
             strokes.emplace_back();
             open = true;
         }
-        strokes.back().emplace_back(static_cast<double>(x + glyph.strokes[i] - '0') / kCapital,
-                                    static_cast<double>(glyph.strokes[i + 1] - '0') / kCapital);
+        strokes.back().emplace_back(glyph.strokes[i] - '0', glyph.strokes[i + 1] - '0');
         i += 2;
     }
+    return strokes;
 }
-
-}  // namespace
 
 std::vector<Polyline> text_strokes(std::string_view text) {
     std::vector<Polyline> strokes;
     int x = 0;
     for (const char letter : text) {
         const Glyph& glyph = glyph_of(letter);
-        add_strokes(glyph, x, strokes);
+        for (Polyline& stroke : glyph_strokes(glyph)) {
+            for (Vector2d& point : stroke) {
+                point = Vector2d(point.x() + x, point.y()) / kCapital;
+            }
+            strokes.push_back(std::move(stroke));
+        }
         x += glyph.width + kGap;
     }
     return strokes;

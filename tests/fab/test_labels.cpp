@@ -1,5 +1,10 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <string>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "fab/strips/labels.h"
@@ -8,6 +13,91 @@ namespace leafcutter::fab {
 namespace {
 
 constexpr std::string_view kAlphabet = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ.-+/:()#<>";
+
+constexpr std::string_view kOfIds = "0123456789WP.+>";
+
+const Glyph& glyph(char letter) {
+    const auto found = std::find_if(font().begin(), font().end(),
+                                    [&](const Glyph& one) { return one.letter == letter; });
+    EXPECT_NE(found, font().end());
+    return *found;
+}
+
+// Points along a glyph's strokes, an eighth of a grid step apart, its box's centre at the origin.
+Polyline sampled(const Glyph& glyph, const Eigen::Vector2d& flip) {
+    Polyline points;
+    Eigen::AlignedBox2d box;
+    for (const Polyline& stroke : glyph_strokes(glyph)) {
+        for (std::size_t i = 0; i + 1 < stroke.size(); ++i) {
+            const int steps = 1 + static_cast<int>(8.0 * (stroke[i + 1] - stroke[i]).norm());
+            for (int k = 0; k <= steps; ++k) {
+                const double part = static_cast<double>(k) / steps;
+                points.emplace_back(stroke[i] + part * (stroke[i + 1] - stroke[i]));
+                box.extend(points.back());
+            }
+        }
+    }
+    const Eigen::Vector2d centre = box.center();
+    for (Eigen::Vector2d& point : points) {
+        point = (point - centre).cwiseProduct(flip);
+    }
+    return points;
+}
+
+// How far the worst point of `one` lies from `other` moved by `shift`.
+double farthest(const Polyline& one, const Polyline& other, const Eigen::Vector2d& shift) {
+    double worst = 0.0;
+    for (const Eigen::Vector2d& p : one) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Eigen::Vector2d& q : other) {
+            nearest = std::min(nearest, (p - q - shift).squaredNorm());
+        }
+        worst = std::max(worst, nearest);
+    }
+    return std::sqrt(worst);
+}
+
+double difference(const Polyline& one, const Polyline& other) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const double x : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+        for (const double y : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+            const Eigen::Vector2d shift(x, y);
+            least = std::min(least,
+                             std::max(farthest(one, other, shift), farthest(other, one, -shift)));
+        }
+    }
+    return least;
+}
+
+TEST(Font, TellsGlyphsOfIdsApartTurnedAndMirrored) {
+    const std::array<Eigen::Vector2d, 4> flips{
+        {{1.0, 1.0}, {-1.0, -1.0}, {-1.0, 1.0}, {1.0, -1.0}}};
+    for (std::size_t i = 0; i < kOfIds.size(); ++i) {
+        const Polyline one = sampled(glyph(kOfIds[i]), flips[0]);
+        for (std::size_t j = 0; j < i; ++j) {
+            for (const Eigen::Vector2d& flip : flips) {
+                EXPECT_GT(difference(one, sampled(glyph(kOfIds[j]), flip)), 1.0)
+                    << kOfIds[i] << " and " << kOfIds[j] << " flipped by " << flip.transpose();
+            }
+        }
+    }
+}
+
+TEST(Font, TellsLookAlikesApart) {
+    const Eigen::Vector2d upright(1.0, 1.0);
+    for (const std::string_view pair : {"0O", "1I", "5S", "2Z", "8B", "WM", "69", "0D"}) {
+        EXPECT_GT(difference(sampled(glyph(pair[0]), upright), sampled(glyph(pair[1]), upright)),
+                  0.85)
+            << pair;
+    }
+}
+
+// Ids stand on every piece twice: a stroke more is a jump of the head more.
+TEST(Font, DrawsWhatIdsAreMadeOfInOneStroke) {
+    for (const char letter : kOfIds) {
+        EXPECT_EQ(glyph_strokes(glyph(letter)).size(), letter == '+' ? 2U : 1U) << letter;
+    }
+}
 
 TEST(TextStrokes, DrawsEveryLetterInsideItsBox) {
     for (const char letter : kAlphabet) {
