@@ -58,6 +58,8 @@ struct ReachedPlace {
 
 struct JobResult {
     JobParams params;
+    std::string params_json;  // The same as JSON, for the report; empty: whoever asked has none.
+    MachineProfile machine;
     InputFacts input;
     geometry::RepairReport repair;
     geometry::Topology topology;

@@ -91,6 +91,8 @@ public:
     Job(const JobParams& params, const PipelineOptions& options, const Context& context)
         : options_(options), context_(context) {
         result_.params = params;
+        result_.params_json = options.params_json;
+        result_.machine = options.machine;
         const auto material = [&](const std::string& id, const char* path) {
             return on_machine(material_named(options.materials, id, path), params.output.machine);
         };
@@ -325,6 +327,7 @@ private:
             context.report(kToolpath.name, static_cast<double>(result_.programs.size()) /
                                                static_cast<double>(result_.layout.sheets.size()));
         }
+        result_.bill = make_bill(result_);
     }
 
     void certify_and_write(const Context& context, PackageSummary& summary) {
@@ -343,6 +346,7 @@ private:
         files.push_back({"strips.json", strips_json(result_)});
         files.push_back({"weave.json", weave_json(result_)});
         files.push_back({"layout.json", layout_json(result_)});
+        files.push_back({"bill.csv", bill_csv(result_)});
         for (std::size_t i = 0; i < result_.programs.size(); ++i) {
             const CutProgram& program = result_.programs[i];
             const std::string name = fmt::format("sheets/sheet-{:03}", program.sheet);

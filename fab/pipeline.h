@@ -26,6 +26,7 @@ struct PipelineInput {
 struct PipelineOptions {
     std::span<const Material> materials;  // Where material names are looked up.
     MachineProfile machine;
+    std::string params_json = {};  // The parameters as JSON, for the report; may be empty.
 };
 
 struct PackageSummary {

@@ -47,6 +47,7 @@ ComputeOutput weave_job(const ComputeInput& input, const geometry::Context& cont
     const fab::JobParams params = params_from_json(parse_params_text(input.params_json));
     fab::PipelineOptions options;
     options.materials = fab::built_in_materials();
+    options.params_json = params_to_json(params).dump();
     fab::PackageSummary summary =
         fab::weave({input.file_name, input.bytes}, params, options, context);
     ComputeOutput output;

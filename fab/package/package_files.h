@@ -17,6 +17,9 @@ std::string weave_json(const JobResult& job);
 std::string layout_json(const JobResult& job);
 std::string report_json(const JobResult& job);
 
+// The bill of materials as a table (RFC 4180): a line for each material.
+std::string bill_csv(const JobResult& job);
+
 // A page that needs nothing else and prints well.
 std::string guide_html(const JobResult& job);
 

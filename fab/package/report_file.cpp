@@ -9,6 +9,7 @@
 
 #include "fab/material/totals.h"
 #include "fab/package/package_files.h"
+#include "fab/package/records.h"
 #include "geometry/error.h"
 #include "geometry/foliation_names.h"
 #include "geometry/quads/mean_widths.h"
@@ -302,6 +303,19 @@ json certificate_json(const Certificate& certificate) {
             {"edges_compared", certificate.edges_compared}};
 }
 
+// What cutting pieces of this job again needs to know.
+void add_makings(const JobResult& job, json& file) {
+    file["bill"] = bill_record(job.bill);
+    file["materials"] = json::array({material_record(job.weft)});
+    if (job.warp.id != job.weft.id) {
+        file["materials"].push_back(material_record(job.warp));
+    }
+    file["machine"] = machine_record(job.machine);
+    if (!job.params_json.empty()) {
+        file["params"] = json::parse(job.params_json);
+    }
+}
+
 // A number that is none is a mistake of ours; JSON would hide it as null.
 void check_finite(const json& value, const std::string& path) {
     if (value.is_number_float() && !std::isfinite(value.get<double>())) {
@@ -342,6 +356,7 @@ std::string report_json(const JobResult& job) {
                  {"timings_s", std::move(timings)},
                  {"certificate", certificate_json(job.certificate)},
                  {"warnings", std::move(warnings)}};
+    add_makings(job, file);
     if (job.quads.planarisation) {
         file["quality"]["planarisation"] = planarisation_json(*job.quads.planarisation);
     }

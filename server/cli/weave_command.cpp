@@ -58,7 +58,8 @@ fab::PackageSummary compute(const WeaveOptions& options,
     const std::vector<std::byte> bytes =
         read_input_file(options.model, geometry::ReadLimits().max_bytes);
     const std::string name = std::filesystem::path(options.model).filename().string();
-    return fab::weave({name, bytes}, params, {fab::built_in_materials(), {}}, context);
+    const fab::PipelineOptions how{fab::built_in_materials(), {}, params_to_json(params).dump()};
+    return fab::weave({name, bytes}, params, how, context);
 }
 
 void tell(const WeaveOptions& options,
