@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/grbl/session.h"
+#include "drivers/marlin/session.h"
 #include "drivers/session_device.h"
 #include "drivers/sim/sim_transport.h"
 #include "drivers/transport.h"
@@ -56,6 +57,14 @@ std::unique_ptr<Session> grbl_session(Session::Time now) {
     return std::make_unique<GrblSession>(now);
 }
 
+std::unique_ptr<Session> marlin_session(Session::Time now) {
+    return std::make_unique<MarlinSession>(MarlinSession::Firmware::Marlin, now);
+}
+
+std::unique_ptr<Session> smoothie_session(Session::Time now) {
+    return std::make_unique<MarlinSession>(MarlinSession::Firmware::Smoothie, now);
+}
+
 }  // namespace
 
 std::unique_ptr<Device> open_device(std::string_view uri) {
@@ -68,9 +77,18 @@ std::unique_ptr<Device> open_device(std::string_view uri) {
         const std::string_view query = uri.substr(std::min(kSimulated.size() + 1, uri.size()));
         return attached(uri, open_simulated_grbl(query), grbl_session);
     }
+    constexpr std::string_view kMarlin = "marlin:";
+    if (starts_with(uri, kMarlin)) {
+        return attached(uri, open_transport(uri.substr(kMarlin.size())), marlin_session);
+    }
+    constexpr std::string_view kSmoothie = "smoothie:";
+    if (starts_with(uri, kSmoothie)) {
+        return attached(uri, open_transport(uri.substr(kSmoothie.size())), smoothie_session);
+    }
     throw std::invalid_argument(
         "device \"" + std::string(uri) +
-        "\": must be grbl:/dev/PORT?baud=N, grbl:tcp://host:port or sim:grbl");
+        "\": must be grbl:/dev/PORT?baud=N, grbl:tcp://host:port, marlin:…, "
+        "smoothie:… alike, or sim:grbl");
 }
 
 }  // namespace leafcutter::drivers

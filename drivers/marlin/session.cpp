@@ -1,0 +1,362 @@
+#include "drivers/marlin/session.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "drivers/gcode_words.h"
+
+namespace leafcutter::drivers {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPollInterval{1000};
+// Marlin says "busy" every two seconds while a line takes long; nothing for longer means that an
+// answer was lost.
+constexpr milliseconds kNudgeAfter{2000};
+constexpr std::size_t kKept = 64;  // Sent lines that may be asked for again.
+constexpr char kReset = 0x18;
+
+// Lights the beam whether or not the head moves: M3 or M4 without I on Marlin.
+bool lights_standing_beam(std::string_view line) {
+    bool beam = false;
+    bool inline_power = false;
+    for (const GcodeWord& word : split_words(line).words) {
+        beam = beam || (word.letter == 'M' && (word.value == 3.0 || word.value == 4.0));
+        inline_power = inline_power || word.letter == 'I';
+    }
+    return beam && !inline_power;
+}
+
+}  // namespace
+
+MarlinSession::MarlinSession(Firmware firmware, Time now)
+    : firmware_(firmware), now_(now), phase_since_(now), heard_(now) {
+    progress_.outcome = JobOutcome::Done;
+    status_.state = MachineState::Unknown;
+}
+
+void MarlinSession::receive(std::string_view bytes, Time now) {
+    now_ = now;
+    if (!bytes.empty()) {
+        heard_ = now;
+    }
+    for (const MarlinEvent& event : protocol_.receive(bytes)) {
+        lines_.push_back(event.text);
+        handle(event);
+    }
+}
+
+void MarlinSession::tick(Time now) {
+    now_ = now;
+    if (phase_ == Phase::Gone) {
+        return;
+    }
+    watch_silence();
+    watch_attach();
+    nudge();
+    poll();
+    fill();
+}
+
+std::string MarlinSession::take_output() {
+    return std::exchange(output_, {});
+}
+
+std::vector<std::string> MarlinSession::take_lines() {
+    return std::exchange(lines_, {});
+}
+
+bool MarlinSession::may_close() const {
+    if (phase_ == Phase::Gone || phase_ == Phase::Killed) {
+        return true;
+    }
+    const auto of_poll = [](const Pending& line) { return line.origin == Origin::Poll; };
+    return !job_runs() && !cancelling_ && commands_.empty() && again_.empty() &&
+           std::all_of(pending_.begin(), pending_.end(), of_poll);
+}
+
+std::string_view MarlinSession::last_words() const {
+    return smoothie() ? "\x18" : "M112\n";
+}
+
+// ---- Commands ----
+
+void MarlinSession::require_ready(std::string_view what) const {
+    if (phase_ == Phase::Gone) {
+        throw Refused(fmt::format("{}: the machine is disconnected", what));
+    }
+    if (phase_ == Phase::Killed) {
+        throw Refused(fmt::format("{}: the controller was halted; {}", what,
+                                  smoothie() ? "unlock it first" : "reset the board first"));
+    }
+    if (phase_ != Phase::Ready) {
+        throw Refused(fmt::format("{}: the machine has not answered yet", what));
+    }
+    if (job_runs() || cancelling_) {
+        throw Refused(fmt::format("{}: a program runs; cancel it first", what));
+    }
+}
+
+void MarlinSession::start(std::string_view text) {
+    require_ready("start");
+    if (!commands_.empty() || status_.state != MachineState::Idle) {
+        throw Refused(fmt::format("start: the machine is busy ({}); it must be idle",
+                                  to_string(status_.state)));
+    }
+    const Program program = read_program(text);
+    for (const ProgramLine& line : program.lines) {
+        if (!smoothie() && lights_standing_beam(line.text)) {
+            throw ProgramRefused(
+                fmt::format("line {} ({}): without I the beam burns while the head stands; make "
+                            "the program for Marlin (output.dialect=marlin)",
+                            line.number, line.text));
+        }
+    }
+    progress_ = {JobOutcome::Running, program.lines.size(), 0, 0, {}};
+    status_.message.clear();
+    status_.state = MachineState::Run;
+    holding_ = false;
+    // The modes a program may take for granted, whatever was typed by hand before it.
+    job_.push_back({Origin::Frame, "G21", 0, 0});
+    job_.push_back({Origin::Frame, "G90", 0, 0});
+    for (const ProgramLine& line : program.lines) {
+        job_.push_back({Origin::Job, line.text, line.number, 0});
+    }
+    // Answered once every move has ended.
+    job_.push_back({Origin::Frame, "M400", 0, 0});
+    fill();
+}
+
+void MarlinSession::hold() {
+    if (!job_runs()) {
+        return;
+    }
+    holding_ = true;
+    status_.state = MachineState::Hold;
+    status_.message = smoothie() ? "" : "holds once the moves under way have ended";
+    if (smoothie()) {
+        output_ += '!';
+    }
+}
+
+void MarlinSession::resume() {
+    if (!holding_) {
+        return;
+    }
+    holding_ = false;
+    status_.message.clear();
+    status_.state = MachineState::Run;
+    if (smoothie()) {
+        output_ += '~';
+    }
+    fill();
+}
+
+void MarlinSession::cancel() {
+    if (phase_ != Phase::Ready || (!job_runs() && commands_.empty() && pending_.empty())) {
+        return;
+    }
+    job_.clear();
+    commands_.clear();
+    if (smoothie()) {
+        stop();
+        return;
+    }
+    cancelling_ = job_runs();
+    holding_ = false;
+    if (emergency_parser_) {
+        output_ += "M410\n";  // Taken out of the stream: the planner is emptied at once.
+    }
+    commands_.push_back({Origin::Frame, "M5", 0, 0});
+    commands_.push_back({Origin::Frame, "M400", 0, 0});
+    fill();
+}
+
+void MarlinSession::stop() {
+    if (phase_ == Phase::Gone) {
+        return;
+    }
+    output_.clear();  // What is not yet on the wire stays off it.
+    output_ += smoothie() ? std::string(1, kReset) : "M112\n";
+    phase_ = Phase::Killed;
+    forget_lines();
+    end_job(JobOutcome::Aborted, "stopped");
+    status_.state = MachineState::Alarm;
+    status_.message =
+        smoothie() ? "halted: unlock it, then home" : "halted by M112: reset the board, then home";
+}
+
+void MarlinSession::home() {
+    require_ready("home");
+    command_state(MachineState::Home);
+    submit("G28 X Y");
+    submit("M400");
+}
+
+void MarlinSession::unlock() {
+    if (phase_ == Phase::Killed && smoothie()) {
+        phase_ = Phase::Greeting;
+        phase_since_ = now_;
+        output_ += "M999\n";
+        return;
+    }
+    require_ready("unlock");
+    submit("M999");
+}
+
+void MarlinSession::jog(const Jog& jog) {
+    require_ready("jog");
+    if (status_.state != MachineState::Idle && status_.state != MachineState::Jog) {
+        throw Refused(fmt::format("jog: the machine is not idle ({})", to_string(status_.state)));
+    }
+    if (!(jog.feed_mm_per_min > 0.0)) {
+        throw Refused("jog: the feed must be above 0");
+    }
+    command_state(MachineState::Jog);
+    submit("M5");
+    submit("G91");
+    submit(fmt::format("G0 X{:.3f} Y{:.3f} F{:.1f}", jog.dx_mm, jog.dy_mm, jog.feed_mm_per_min));
+    submit("G90");
+    submit("M400");
+}
+
+void MarlinSession::jog_cancel() {
+    if (status_.state != MachineState::Jog) {
+        return;
+    }
+    const auto is_move = [](const Pending& line) { return line.text.substr(0, 2) == "G0"; };
+    commands_.erase(std::remove_if(commands_.begin(), commands_.end(), is_move), commands_.end());
+    if (emergency_parser_) {
+        output_ += "M410\n";
+    }
+}
+
+void MarlinSession::console(std::string_view line) {
+    const std::size_t first = line.find_first_not_of(" \t\r\n");
+    const std::size_t last = line.find_last_not_of(" \t\r\n");
+    line =
+        first == std::string_view::npos ? std::string_view{} : line.substr(first, last - first + 1);
+    if (line.empty()) {
+        return;
+    }
+    if (line == "M112" || line == "\x18") {
+        stop();
+        return;
+    }
+    require_ready("console");
+    try {
+        numbered_line(next_number_ + kKept, line);
+    } catch (const std::invalid_argument& wrong) {
+        throw Refused(fmt::format("console: {}", wrong.what()));
+    }
+    submit(std::string(line));
+}
+
+void MarlinSession::lose_link(const std::string& reason) {
+    end_job(JobOutcome::LinkLost, reason);
+    forget_lines();
+    output_.clear();
+    phase_ = Phase::Gone;
+    status_.state = MachineState::Disconnected;
+    status_.message = reason;
+}
+
+void MarlinSession::submit(std::string line) {
+    commands_.push_back({Origin::Command, std::move(line), 0, 0});
+    fill();
+}
+
+void MarlinSession::command_state(MachineState state) {
+    status_.state = state;
+}
+
+// ---- Sending ----
+
+bool MarlinSession::may_send() const {
+    return phase_ == Phase::Ready && now_ >= quiet_until_ && pending_.size() < window_;
+}
+
+void MarlinSession::fill() {
+    while (may_send()) {
+        std::deque<Pending>* source = &again_;
+        if (again_.empty()) {
+            const bool job = job_runs() && !cancelling_ && !holding_ && !job_.empty();
+            source = commands_.empty() && job ? &job_ : &commands_;
+        }
+        if (source->empty()) {
+            return;
+        }
+        Pending line = std::move(source->front());
+        source->pop_front();
+        send(std::move(line));
+    }
+}
+
+void MarlinSession::send(Pending line) {
+    const bool first = line.number == 0;
+    if (first) {
+        line.number = next_number_++;
+        progress_.lines_sent += line.origin == Origin::Job ? 1 : 0;
+    }
+    output_ += numbered_line(line.number, line.text);
+    sent_at_ = now_;
+    pending_.push_back(line);
+    if (first) {
+        history_.push_back(std::move(line));
+        if (history_.size() > kKept) {
+            history_.pop_front();
+        }
+    }
+}
+
+void MarlinSession::poll() {
+    if (phase_ != Phase::Ready || now_ - polled_ < kPollInterval) {
+        return;
+    }
+    const auto of_poll = [](const Pending& line) { return line.origin == Origin::Poll; };
+    if (std::none_of(commands_.begin(), commands_.end(), of_poll) &&
+        std::none_of(pending_.begin(), pending_.end(), of_poll)) {
+        polled_ = now_;
+        commands_.push_back({Origin::Poll, "M114", 0, 0});
+    }
+}
+
+// Beyond the window: the controller has room for it, and its answer says what became of the lines
+// before it.
+void MarlinSession::nudge() {
+    const auto of_nudge = [](const Pending& line) { return line.origin == Origin::Nudge; };
+    if (phase_ != Phase::Ready || pending_.empty() || now_ < quiet_until_ ||
+        now_ - std::max(heard_, sent_at_) < kNudgeAfter ||
+        std::any_of(pending_.begin(), pending_.end(), of_nudge)) {
+        return;
+    }
+    send({Origin::Nudge, "M114", 0, 0});
+}
+
+// ---- Ending ----
+
+void MarlinSession::end_job(JobOutcome outcome, std::string reason) {
+    job_.clear();
+    holding_ = cancelling_ = false;
+    if (job_runs()) {
+        progress_.outcome = outcome;
+        progress_.reason = std::move(reason);
+        if (outcome != JobOutcome::Done) {
+            status_.message = progress_.reason;
+        }
+    }
+}
+
+void MarlinSession::forget_lines() {
+    pending_.clear();
+    history_.clear();
+    again_.clear();
+    commands_.clear();
+}
+
+}  // namespace leafcutter::drivers

@@ -1,0 +1,243 @@
+// What a session does about what the controller says, and about what it doesn't.
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "drivers/grbl/status_report.h"
+#include "drivers/marlin/session.h"
+#include "drivers/transport.h"
+
+namespace leafcutter::drivers {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kBannerWait{3000};  // A board's boot loader.
+constexpr milliseconds kAnswerWait{2000};
+constexpr milliseconds kSilence{20000};
+constexpr milliseconds kQuiet{100};  // Some versions answer "ok" after "Resend", some don't.
+constexpr std::size_t kMostResends = 12;
+
+}  // namespace
+
+void MarlinSession::handle(const MarlinEvent& event) {
+    using Kind = MarlinEvent::Kind;
+    switch (event.kind) {
+        case Kind::Ack:
+            handle_ack(event);
+            break;
+        case Kind::Resend:
+            handle_resend(event.number);
+            break;
+        case Kind::Error:
+            handle_error(event.text);
+            break;
+        case Kind::Halted:
+            handle_halt(event.text);
+            break;
+        case Kind::Restart:
+            handle_restart();
+            break;
+        case Kind::Position:
+            take_position(event.text);
+            break;
+        case Kind::Status:
+            if (const auto report = parse_status_report(event.text)) {
+                status_.feed_mm_per_min = report->feed.value_or(status_.feed_mm_per_min);
+            }
+            break;
+        case Kind::Firmware:
+            status_.firmware = event.text.substr(14, event.text.find(" SOURCE_CODE") - 14);
+            break;
+        case Kind::Capability:
+            emergency_parser_ = emergency_parser_ || event.text == "Cap:EMERGENCY_PARSER:1";
+            break;
+        case Kind::Busy:
+        case Kind::Other:
+            break;
+    }
+}
+
+void MarlinSession::handle_ack(const MarlinEvent& event) {
+    if (event.text.find("X:") != std::string::npos) {
+        take_position(event.text);
+    }
+    if (phase_ == Phase::Asking) {
+        phase_ = Phase::Numbering;
+        phase_since_ = now_;
+        output_ += numbered_line(0, "M110 N0");
+        next_number_ = 1;
+        return;
+    }
+    if (phase_ == Phase::Numbering) {
+        phase_ = Phase::Ready;
+        status_.state = MachineState::Idle;
+        polled_ = Time{};
+        return;
+    }
+    if (phase_ != Phase::Ready || now_ < quiet_until_ || pending_.empty()) {
+        return;
+    }
+    if (event.text.find(" B") != std::string::npos && event.text.find(" P") != std::string::npos) {
+        window_ = 4;  // ADVANCED_OK: it counts its buffers, and has four at least.
+    }
+    asked_again_ = 0;
+    const std::size_t count = answered_by(event.text);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Pending line = std::move(pending_.front());
+        pending_.pop_front();
+        answered(line);
+    }
+}
+
+// How many of the lines under way an "ok" says to be taken: those up to the one it names, or up to
+// the M114 whose position came before it; else the oldest.
+std::size_t MarlinSession::answered_by(const std::string& ok) {
+    const std::size_t name = ok.find(" N");
+    std::size_t positions = std::exchange(positions_heard_, 0);
+    if (name != std::string::npos) {
+        const std::size_t number = std::strtoul(ok.c_str() + name + 2, nullptr, 10);
+        const auto later =
+            std::find_if(pending_.begin(), pending_.end(),
+                         [number](const Pending& line) { return line.number > number; });
+        return static_cast<std::size_t>(later - pending_.begin());
+    }
+    for (std::size_t i = 0; i < pending_.size() && positions > 0; ++i) {
+        positions -= pending_[i].text == "M114" ? 1 : 0;
+        if (positions == 0) {
+            return i + 1;
+        }
+    }
+    return 1;
+}
+
+void MarlinSession::answered(const Pending& line) {
+    progress_.lines_acknowledged += line.origin == Origin::Job ? 1 : 0;
+    if (line.text != "M400") {
+        return;
+    }
+    if (cancelling_ && line.origin == Origin::Frame) {
+        end_job(JobOutcome::Aborted, "cancelled");
+    } else if (job_runs() && line.origin == Origin::Frame && job_.empty()) {
+        end_job(JobOutcome::Done, {});
+    }
+    set_resting_state();
+}
+
+void MarlinSession::set_resting_state() {
+    const auto of_poll = [](const Pending& line) { return line.origin == Origin::Poll; };
+    if (!job_runs() && std::all_of(commands_.begin(), commands_.end(), of_poll)) {
+        status_.state = MachineState::Idle;
+    }
+}
+
+void MarlinSession::handle_resend(std::size_t number) {
+    if (phase_ != Phase::Ready) {
+        return;
+    }
+    if (now_ >= quiet_until_) {  // Else one of several for lines that were under way together.
+        ++resends_;
+        asked_again_ = number == last_asked_ ? asked_again_ + 1 : 1;
+    }
+    quiet_until_ = now_ + kQuiet;
+    last_asked_ = number;
+    // Lines before it were taken, and their answers are still to come.
+    const auto lost = std::find_if(pending_.begin(), pending_.end(),
+                                   [number](const Pending& line) { return line.number >= number; });
+    pending_.erase(lost, pending_.end());
+    again_.clear();
+    for (const Pending& line : history_) {
+        if (line.number >= number && line.number < next_number_) {
+            again_.push_back(line);
+        }
+    }
+    const bool known =
+        number == next_number_ || (!again_.empty() && again_.front().number == number);
+    if (!known || asked_again_ > kMostResends) {
+        end_job(JobOutcome::Failed,
+                fmt::format("the controller asks for line {} of the link again, {}", number,
+                            known ? "and again: the cable is disturbed" : "which is long past"));
+        forget_lines();
+        commands_.push_back({Origin::Frame, fmt::format("M110 N{}", next_number_), 0, 0});
+        commands_.push_back({Origin::Frame, "M5", 0, 0});
+    }
+}
+
+// A fault of the link comes with a Resend and costs nothing; any other is the program's.
+void MarlinSession::handle_error(const std::string& text) {
+    const auto of_link = [&text](std::string_view part) {
+        return text.find(part) != std::string::npos;
+    };
+    if (of_link("hecksum") || of_link("Line Number") || of_link("line number") ||
+        of_link("No Line")) {
+        return;
+    }
+    status_.message = text;
+    if (job_runs() && !cancelling_ && !pending_.empty()) {
+        end_job(JobOutcome::Failed, fmt::format("line {} ({}): {}", pending_.front().line,
+                                                pending_.front().text, text));
+        commands_.push_back({Origin::Frame, "M5", 0, 0});
+        commands_.push_back({Origin::Frame, "M400", 0, 0});
+    }
+}
+
+void MarlinSession::handle_halt(const std::string& text) {
+    if (phase_ == Phase::Killed) {
+        return;
+    }
+    phase_ = Phase::Killed;
+    end_job(JobOutcome::Failed, fmt::format("the controller halted: {}", text));
+    forget_lines();
+    status_.state = MachineState::Alarm;
+    status_.message =
+        fmt::format("halted ({}): {}", text,
+                    smoothie() ? "unlock it, then home" : "reset the board, then home");
+}
+
+void MarlinSession::handle_restart() {
+    if (phase_ != Phase::Greeting) {
+        end_job(JobOutcome::Failed,
+                "the controller restarted during the program; its position is lost, home it");
+    }
+    forget_lines();
+    phase_ = Phase::Asking;
+    phase_since_ = now_;
+    positioned_ = false;
+    window_ = 1;
+    emergency_parser_ = false;
+    output_ += "M115\n";
+}
+
+void MarlinSession::take_position(const std::string& text) {
+    if (const auto position = parse_position(text)) {
+        positioned_ = true;
+        ++positions_heard_;
+        status_.machine_position_mm = {position->x_mm, position->y_mm, position->z_mm};
+        status_.work_position_mm = status_.machine_position_mm;
+    }
+}
+
+void MarlinSession::watch_attach() {
+    const auto waited = now_ - phase_since_;
+    if (phase_ == Phase::Greeting && waited > kBannerWait) {
+        handle_restart();  // It was running already, and says nothing by itself.
+    } else if ((phase_ == Phase::Asking || phase_ == Phase::Numbering) && waited > kAnswerWait) {
+        phase_ = Phase::Asking;
+        phase_since_ = now_;
+        output_ += "M115\n";
+    }
+}
+
+void MarlinSession::watch_silence() const {
+    const bool waits = !pending_.empty() && phase_ == Phase::Ready;
+    if (waits && now_ - std::max(heard_, sent_at_) > kSilence) {
+        throw LinkLost(fmt::format("no answer to {} for {} s", pending_.front().text,
+                                   kSilence.count() / 1000));
+    }
+}
+
+}  // namespace leafcutter::drivers
