@@ -66,6 +66,18 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+// The program is at fault, not the machine.
+class ProgramRefused : public Refused {
+public:
+    using Refused::Refused;
+};
+
+// Nobody knows where the head stands: home the machine first.
+class NotHomed : public Refused {
+public:
+    using Refused::Refused;
+};
+
 class Device {
 public:
     virtual ~Device() = default;

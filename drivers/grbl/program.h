@@ -14,12 +14,6 @@
 
 namespace leafcutter::drivers {
 
-// The program is at fault, not the machine.
-class ProgramRefused : public Refused {
-public:
-    using Refused::Refused;
-};
-
 struct ProgramLine {
     std::string text;
     std::size_t number = 0;  // In the file, from 1.
