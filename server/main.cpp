@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
     add_devices_command(app, common);
     add_audit_command(app, common);
     add_nest_command(app, common);
+    add_materials_command(app, common);
 
     try {
         app.parse(argc, argv);

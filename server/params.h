@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,9 +11,9 @@
 
 namespace leafcutter::server {
 
-// Parses JSON text. Throws geometry::Error(BadOption) naming the place of a syntax error, a key
-// that is there twice, or nesting deeper than parameters go.
-nlohmann::json parse_params_text(std::string_view text);
+// Parses JSON text, called `what` in messages. Throws geometry::Error(BadOption) naming the place
+// of a syntax error, a key that is there twice, or nesting deeper than parameters go.
+nlohmann::json parse_params_text(std::string_view text, const std::string& what = "parameters");
 
 // Sets one value in `params`: "grid.strip_width_mm=5". What is no JSON value is taken as text.
 // Throws geometry::Error(BadOption) for an assignment without path or "=".

@@ -15,12 +15,12 @@ namespace leafcutter::server {
 
 using nlohmann::json;
 
-json parse_params_text(std::string_view text) {
+json parse_params_text(std::string_view text, const std::string& what) {
     constexpr int kDeepest = 16;
     std::vector<std::set<std::string>> keys;
     const json::parser_callback_t strict = [&](int depth, json::parse_event_t event, json& parsed) {
         if (depth > kDeepest) {
-            refuse_param("parameters", "nested too deeply");
+            refuse_param(what, "nested too deeply");
         }
         if (event == json::parse_event_t::object_start) {
             keys.emplace_back();
@@ -37,11 +37,11 @@ json parse_params_text(std::string_view text) {
     try {
         return json::parse(text, strict);
     } catch (const json::exception& error) {
-        const std::string_view what = error.what();
-        const auto detail = what.find("] ");
-        refuse_param("parameters", "no JSON: " + std::string(detail == std::string_view::npos
-                                                                 ? what
-                                                                 : what.substr(detail + 2)));
+        const std::string_view message = error.what();
+        const auto detail = message.find("] ");
+        refuse_param(what, "no JSON: " + std::string(detail == std::string_view::npos
+                                                         ? message
+                                                         : message.substr(detail + 2)));
     }
 }
 

@@ -45,7 +45,7 @@ using PieceIndex = std::map<std::string_view, const Piece*>;
 
 // Smallest gap on a sheet, infinite for a single piece.
 double check_sheet(const Sheet& sheet, const PieceIndex& index, const NestOptions& options) {
-    const std::vector<double> allowed = allowed_rotations(options.rotation);
+    const std::vector<double> allowed = allowed_rotations(options);
     const double unit = exact_unit(std::max(sheet.size.width_mm, sheet.size.height_mm));
     const auto units = [&](double mm) { return std::llround(mm / unit); };
     std::vector<PlacedRing> rings;
@@ -96,6 +96,10 @@ std::vector<double> allowed_rotations(Rotation rotation) {
             break;
     }
     return {0.0};
+}
+
+std::vector<double> allowed_rotations(const NestOptions& options) {
+    return options.turns_deg.empty() ? allowed_rotations(options.rotation) : options.turns_deg;
 }
 
 double prove_layout(const Layout& layout,

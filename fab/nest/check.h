@@ -20,5 +20,6 @@ double prove_layout(const Layout& layout,
 
 // The rotations of a choice; empty means any.
 std::vector<double> allowed_rotations(Rotation rotation);
+std::vector<double> allowed_rotations(const NestOptions& options);
 
 }  // namespace leafcutter::fab

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "fab/material/totals.h"
+#include "fab/nest/check.h"
 #include "fab/nest/nest.h"
 #include "geometry/error.h"
 
@@ -33,7 +35,7 @@ NestOptions nest_options(const NestingParams& params, const Batch& batch, double
     options.spacing_mm = params.spacing_mm;
     options.margin_mm = params.margin_mm;
     options.kerf_mm = batch.material.kerf_mm;
-    options.rotation = params.rotation;
+    options.turns_deg = turns_on(batch.material, params.rotation);
     options.seed = params.seed;
     std::size_t corners = 0;
     for (const Piece* piece : batch.pieces) {
@@ -45,6 +47,73 @@ NestOptions nest_options(const NestingParams& params, const Batch& batch, double
     options.max_evaluations = std::max<std::int64_t>(1, std::llround(tried));
     options.time_s = kSlowestFactor * params.time_s * share;
     return options;
+}
+
+double edges(const Material& material, const NestingParams& params) {
+    return 2.0 * params.margin_mm + material.kerf_mm;
+}
+
+double area(const SheetSize& size) {
+    return size.width_mm * size.height_mm;
+}
+
+// Those that margins leave something of.
+std::vector<SheetSize> usable_sizes(const Material& material, const NestingParams& params) {
+    std::vector<SheetSize> sizes;
+    const double edge = edges(material, params);
+    for (const StockSheet& sheet : material.sheets) {
+        if (sheet.size.width_mm > edge && sheet.size.height_mm > edge) {
+            sizes.push_back(sheet.size);
+        }
+    }
+    return sizes;
+}
+
+// What a sheet counts when sizes are compared: its price if all have one, else its area.
+double worth(const Material& material, const SheetSize& size) {
+    const bool priced =
+        std::all_of(material.sheets.begin(), material.sheets.end(),
+                    [](const StockSheet& sheet) { return sheet.price.has_value(); });
+    for (const StockSheet& sheet : material.sheets) {
+        if (priced && sheet.size.width_mm == size.width_mm &&
+            sheet.size.height_mm == size.height_mm) {
+            return *sheet.price;
+        }
+    }
+    return area(size);
+}
+
+// A short search on each size tells which one the whole search is worth.
+Layout nest_on_best_size(const Batch& batch,
+                         const NestingParams& params,
+                         const NestOptions& options,
+                         const geometry::Context& context) {
+    constexpr std::int64_t kShortShare = 8;
+    constexpr double kClearlyLess = 0.95;
+    const std::vector<SheetSize> sizes = usable_sizes(batch.material, params);
+    const SheetSize* best = &sizes.front();
+    std::size_t least_unplaced = 0;
+    double least_worth = 0.0;
+    geometry::Context quiet = context;
+    quiet.progress = {};
+    NestOptions brief = options;
+    brief.max_evaluations = std::max<std::int64_t>(1, options.max_evaluations / kShortShare);
+    brief.time_s = options.time_s / static_cast<double>(kShortShare);
+    for (std::size_t i = 0; i < sizes.size() && sizes.size() > 1; ++i) {
+        const Layout layout = nest(batch.pieces, sizes[i], brief, quiet);
+        context.check();
+        const double taken =
+            static_cast<double>(layout.sheets.size()) * worth(batch.material, sizes[i]);
+        const std::size_t unplaced = layout.unplaced.size();
+        const bool better = unplaced < least_unplaced ||
+                            (unplaced == least_unplaced && taken < kClearlyLess * least_worth);
+        if (i == 0 || better) {
+            best = &sizes[i];
+            least_unplaced = unplaced;
+            least_worth = taken;
+        }
+    }
+    return nest(batch.pieces, *best, options, context);
 }
 
 double density_percent(const Layout& layout, std::span<const Piece> pieces) {
@@ -81,22 +150,57 @@ void append(Layout& whole, Layout part, const Batch& batch) {
 
 }  // namespace
 
-SheetSize usable_sheet(const Material& material, const NestingParams& params) {
+PieceRoom piece_room(const Material& material, const NestingParams& params) {
     if (material.sheets.empty()) {
         throw geometry::Error(geometry::ErrorKind::BadOption, "no-sheet",
                               fmt::format("material {}: has no sheets", material.id));
     }
-    const SheetSize& sheet = material.sheets.front().size;
-    const double edge = 2.0 * params.margin_mm + material.kerf_mm;
-    const SheetSize usable{sheet.width_mm - edge, sheet.height_mm - edge};
-    if (!(usable.width_mm > 0.0) || !(usable.height_mm > 0.0)) {
+    const std::vector<SheetSize> sizes = usable_sizes(material, params);
+    if (sizes.empty()) {
+        const SheetSize& sheet = material.sheets.front().size;
         throw geometry::Error(
             geometry::ErrorKind::BadOption, "sheet-too-small",
             fmt::format(
                 "nesting.margin_mm: a sheet of {:g} x {:g} mm is no larger than its margins",
                 sheet.width_mm, sheet.height_mm));
     }
-    return usable;
+    const double edge = edges(material, params);
+    const SheetSize& sheet =
+        *std::max_element(sizes.begin(), sizes.end(),
+                          [](const SheetSize& a, const SheetSize& b) { return area(a) < area(b); });
+    PieceRoom room{{sheet.width_mm - edge, sheet.height_mm - edge}, params.rotation};
+    if (material.grain_deg) {
+        room.rotation = params.rotation == Rotation::Fixed ? Rotation::Fixed : Rotation::Half;
+        if (*material.grain_deg > 45.0) {
+            std::swap(room.size.width_mm, room.size.height_mm);
+        }
+    }
+    return room;
+}
+
+SheetSize usable_sheet(const Material& material, const NestingParams& params) {
+    return piece_room(material, params).size;
+}
+
+std::vector<double> turns_on(const Material& material, Rotation rotation) {
+    if (!material.grain_deg) {
+        return allowed_rotations(rotation);
+    }
+    std::vector<double> turns;
+    const bool exact = rotation == Rotation::Fixed || rotation == Rotation::Half;
+    const double tolerance = exact ? 0.0 : material.grain_tolerance_deg;
+    for (const double half : {0.0, 180.0}) {
+        if (half > 0.0 && rotation == Rotation::Fixed) {
+            break;
+        }
+        turns.push_back(*material.grain_deg + half);
+        for (const double part : {-1.0, -0.5, 0.5, 1.0}) {
+            if (tolerance > 0.0) {
+                turns.push_back(*material.grain_deg + half + part * tolerance);
+            }
+        }
+    }
+    return turns;
 }
 
 Layout nest_families(std::span<const Piece> pieces,
@@ -124,7 +228,7 @@ Layout nest_families(std::span<const Piece> pieces,
         part.progress = [&](std::string_view stage, double fraction) {
             context.report(stage, done + share * fraction);
         };
-        append(whole, nest(batch.pieces, batch.material.sheets.front().size, options, part), batch);
+        append(whole, nest_on_best_size(batch, params, options, part), batch);
         done += share;
         context.check();  // A stopped search returns its best so far; here a stop is a stop.
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "fab/job_params.h"
 #include "fab/layout.h"
@@ -17,11 +18,26 @@ struct FamilyMaterials {
     const Material& warp;
 };
 
-// The part of a sheet of `material` that pieces may take: without margins and half a kerf around.
+// What a piece may take of a sheet, as it lies in its own frame.
+struct PieceRoom {
+    SheetSize size;
+    Rotation rotation = Rotation::Free;
+};
+
+// The part of the largest sheet of `material` that pieces may take: without margins and half a kerf
+// around. Where the material has a grain, pieces lie along it: at most turned over end.
 // Throws Error(BadOption) if nothing is left of it or the material has no sheets.
+PieceRoom piece_room(const Material& material, const NestingParams& params);
+
 SheetSize usable_sheet(const Material& material, const NestingParams& params);
 
-// Sheets are numbered from 1, weft first. Density counts whole sheets.
+// The rotations that `material` leaves of those asked for; empty: any. The search knows single
+// rotations only, so a tolerance around the grain becomes some of them.
+std::vector<double> turns_on(const Material& material, Rotation rotation);
+
+// Sheets are numbered from 1, weft first. Density counts whole sheets. All sheets of a material are
+// of one size: the first one it lists, unless another one holds more pieces or takes clearly less
+// material (or money, where every size has a price).
 Layout nest_families(std::span<const Piece> pieces,
                      const FamilyMaterials& materials,
                      const NestingParams& params,

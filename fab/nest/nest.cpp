@@ -71,7 +71,7 @@ public:
         check_options(options);
         extent_ = usable_extent(size, options);
         grow_ = (options.spacing_mm + options.kerf_mm) / 2.0 + kGapGuardMm;
-        const std::vector<double> allowed = allowed_rotations(options.rotation);
+        const std::vector<double> allowed = allowed_rotations(options);
         for (const Piece* piece : pieces) {
             if (const std::string fault = ring_fault(piece->outline); !fault.empty()) {
                 throw geometry::Error(geometry::ErrorKind::BadOption, "bad-piece",
@@ -118,7 +118,7 @@ private:
         Frame frame;
         frame.quarters = quarters;
         frame.extent = quarters % 2 == 0 ? extent_ : Eigen::Vector2d(extent_.y(), extent_.x());
-        std::vector<double> allowed = allowed_rotations(options_.rotation);
+        std::vector<double> allowed = allowed_rotations(options_);
         for (double& angle : allowed) {
             angle = std::remainder(angle - 90.0 * quarters, 360.0);
         }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "fab/job_params.h"
 #include "fab/layout.h"
@@ -20,6 +21,7 @@ struct NestOptions {
     double margin_mm = 5.0;   // From the sheet's edge, after kerf.
     double kerf_mm = 0.0;
     Rotation rotation = Rotation::Free;
+    std::vector<double> turns_deg = {};  // Instead of `rotation`, unless empty.
     std::uint32_t seed = 1;
     std::int64_t max_evaluations = 400'000;  // Places tried for a piece.
     double time_s = 0.0;  // By the context's clock, from the first layout on; 0: no limit.

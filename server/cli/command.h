@@ -44,6 +44,7 @@ void add_inspect_command(CLI::App& app, const CommonOptions& common);
 void add_weave_command(CLI::App& app, const CommonOptions& common);
 void add_sample_command(CLI::App& app, const CommonOptions& common);
 void add_nest_command(CLI::App& app, const CommonOptions& common);
+void add_materials_command(CLI::App& app, const CommonOptions& common);
 void add_recut_command(CLI::App& app, const CommonOptions& common);
 void add_audit_command(CLI::App& app, const CommonOptions& common);
 void add_serve_command(CLI::App& app, const CommonOptions& common);

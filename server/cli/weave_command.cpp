@@ -19,6 +19,7 @@
 #include "server/cli/command.h"
 #include "server/cli/input_file.h"
 #include "server/cli/interrupt.h"
+#include "server/cli/material_options.h"
 #include "server/cli/package_dir.h"
 #include "server/cli/progress_line.h"
 #include "server/params.h"
@@ -31,6 +32,7 @@ struct WeaveOptions {
     std::string model;
     std::string output;
     std::string params_file;
+    std::string materials_file;
     std::vector<std::string> assignments;
 };
 
@@ -58,7 +60,8 @@ fab::PackageSummary compute(const WeaveOptions& options,
     const std::vector<std::byte> bytes =
         read_input_file(options.model, geometry::ReadLimits().max_bytes);
     const std::string name = std::filesystem::path(options.model).filename().string();
-    const fab::PipelineOptions how{fab::built_in_materials(), {}, params_to_json(params).dump()};
+    const std::vector<fab::Material> materials = wanted_materials(options.materials_file);
+    const fab::PipelineOptions how{materials, {}, params_to_json(params).dump()};
     return fab::weave({name, bytes}, params, how, context);
 }
 
@@ -116,6 +119,8 @@ void add_weave_command(CLI::App& app, const CommonOptions& common) {
     command->add_option("model", options->model, "A mesh: .stl .obj .off .ply")->required();
     command->add_option("-o,--output", options->output, "Directory to write")->required();
     command->add_option("--params", options->params_file, "Job parameters, a JSON file");
+    command->add_option("--materials", options->materials_file,
+                        "A JSON file with materials of your own");
     command
         ->add_option("--set", options->assignments,
                      "One job parameter: grid.strip_width_mm=5 (may be repeated)")
