@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "fab/strips/overlap.h"
 
@@ -11,29 +12,24 @@ namespace {
 
 using Eigen::Vector2d;
 
-// A tab is this much narrower on each side, so that it hides under the piece it is glued to.
-constexpr double kTabInsetMm = 0.5;
-constexpr double kTabInsetPart = 0.1;  // At most this part of the width.
+// A strip narrower than this part of its least width is no strip.
+constexpr double kHopelessPart = 0.2;
 
-struct Band {
-    Polyline left;
-    Polyline right;
+// A rung that stands more obliquely than this is measured as if it stood so.
+constexpr double kLeastSine = 0.5;
 
-    std::size_t rungs() const { return left.size(); }
-    Vector2d middle(std::size_t i) const { return (left[i] + right[i]) / 2.0; }
-    double width(std::size_t i) const { return (left[i] - right[i]).norm(); }
-};
+// Where the middle line turns by more than this in radians, the inner side isn't widened.
+constexpr double kTurns = 0.1;
 
-Band crimped(const Unfolded& flat, double thickness_mm) {
+Band crimped(const Unfolded& flat, const std::vector<double>& extra_mm) {
     Band band{flat.left, flat.right};
     Vector2d shift = Vector2d::Zero();
     for (std::size_t i = 1; i < band.rungs(); ++i) {
         const Vector2d step =
             (flat.left[i] + flat.right[i] - flat.left[i - 1] - flat.right[i - 1]) / 2.0;
         const double length = step.norm();
-        const double more = std::min(std::hypot(length, thickness_mm) - length, kMaxCrimp * length);
-        if (length > 0.0) {
-            shift += more / length * step;
+        if (length > 0.0 && i <= extra_mm.size()) {
+            shift += extra_mm[i - 1] / length * step;
         }
         band.left[i] += shift;
         band.right[i] += shift;
@@ -50,75 +46,177 @@ double along_rung(const Polyline& side, std::size_t i, const Vector2d& rung, dou
     return clearance_mm / std::max(sine, 0.5);
 }
 
-// Moves both ends of every rung inward; `least` is the width that stays.
-Band narrowed(const Band& band, double clearance_mm, double least) {
+// A rung as part of its band.
+struct Stance {
+    Vector2d rung = Vector2d::Zero();  // Unit, left to right.
+    double sine = 1.0;                 // Of its angle with the middle line: across over along.
+    double turn = 0.0;                 // Of the middle line there, radians, to the left.
+};
+
+class Widths {
+public:
+    explicit Widths(const Band& band) : band_(band) {
+        for (std::size_t i = 0; i < band.rungs(); ++i) {
+            stances_.push_back(stance(i));
+        }
+    }
+
+    const Stance& operator[](std::size_t i) const { return stances_[i]; }
+    double across(std::size_t i) const { return band_.width(i) * stances_[i].sine; }
+
+private:
+    // Middle line's way into or out of rung i, unit; zero at the ends.
+    Vector2d step(std::size_t from, std::size_t to) const {
+        return (band_.middle(to) - band_.middle(from)).stableNormalized();
+    }
+
+    Stance stance(std::size_t i) const {
+        const Vector2d in = i > 0 ? step(i - 1, i) : Vector2d::Zero();
+        const Vector2d out = i + 1 < band_.rungs() ? step(i, i + 1) : Vector2d::Zero();
+        const Vector2d way = (in + out).stableNormalized();
+        Stance result;
+        result.rung = (band_.right[i] - band_.left[i]).stableNormalized();
+        if (band_.width(i) < 1e-6) {
+            result.rung = Vector2d(way.y(), -way.x());
+        }
+        const auto sine = [&](const Vector2d& tangent) {
+            return tangent.squaredNorm() < 0.5
+                       ? 1.0
+                       : std::abs(tangent.x() * result.rung.y() - tangent.y() * result.rung.x());
+        };
+        result.sine = std::max(kLeastSine, std::min(sine(in), sine(out)));
+        result.turn = std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out));
+        return result;
+    }
+
+    const Band& band_;
+    std::vector<Stance> stances_;
+};
+
+// How much of what a rung is widened by goes to its left end.
+double left_share(double turn, Widening widening) {
+    if (widening == Widening::BothSides || std::abs(turn) < kTurns) {
+        return 0.5;
+    }
+    return turn > 0.0 ? 0.0 : 1.0;
+}
+
+// Moves the ends of every rung: inward by the clearance, but apart to the least width.
+Band with_widths(const Band& band, const Widths& widths, const FitOptions& options) {
     Band result = band;
     for (std::size_t i = 0; i < band.rungs(); ++i) {
+        const Stance& stance = widths[i];
         const double width = band.width(i);
-        if (width <= least || clearance_mm <= 0.0) {
-            continue;
+        const double least = options.min_width_mm / stance.sine;
+        if (width > least && options.clearance_mm > 0.0) {
+            const double left = along_rung(band.left, i, stance.rung, options.clearance_mm);
+            const double right = along_rung(band.right, i, stance.rung, options.clearance_mm);
+            const double scale = std::min(1.0, (width - least) / (left + right));
+            result.left[i] += scale * left * stance.rung;
+            result.right[i] -= scale * right * stance.rung;
+        } else if (width < least && options.widening != Widening::None) {
+            const double share = left_share(stance.turn, options.widening);
+            result.left[i] -= share * (least - width) * stance.rung;
+            result.right[i] += (1.0 - share) * (least - width) * stance.rung;
         }
-        const Vector2d rung = (band.right[i] - band.left[i]) / width;
-        const double left = along_rung(band.left, i, rung, clearance_mm);
-        const double right = along_rung(band.right, i, rung, clearance_mm);
-        const double scale = std::min(1.0, (width - least) / (left + right));
-        result.left[i] += scale * left * rung;
-        result.right[i] -= scale * right * rung;
     }
     return result;
 }
 
-// The rungs of the tab, from the first after the piece's last rung to its end.
-Band tab_of(const Band& band, std::size_t last, double tab_mm) {
-    Band tab;
-    double length = 0.0;
-    for (std::size_t i = last; i + 1 < band.rungs() && length < tab_mm; ++i) {
-        const double step = (band.middle(i + 1) - band.middle(i)).norm();
-        const double part = step > tab_mm - length ? (tab_mm - length) / step : 1.0;
-        length += part * step;
-        const Vector2d left = band.left[i] + part * (band.left[i + 1] - band.left[i]);
-        const Vector2d right = band.right[i] + part * (band.right[i + 1] - band.right[i]);
-        const double width = (left - right).norm();
-        const double inset = std::min(kTabInsetMm / std::max(width, 1e-9), kTabInsetPart);
-        tab.left.push_back(left + inset * (right - left));
-        tab.right.push_back(right + inset * (left - right));
-    }
-    return tab;
+Band part_of(const Band& band, std::size_t from, std::size_t to) {
+    const auto part = [&](const Polyline& side) {
+        return Polyline(side.begin() + static_cast<std::ptrdiff_t>(from),
+                        side.begin() + static_cast<std::ptrdiff_t>(to) + 1);
+    };
+    return {part(band.left), part(band.right)};
 }
 
-double centre_length(const Band& band) {
-    double length = 0.0;
-    for (std::size_t i = 1; i < band.rungs(); ++i) {
-        length += (band.middle(i) - band.middle(i - 1)).norm();
+// The part of the way between two widths, changing evenly, on which they are below a limit.
+double part_below(double one, double other, double limit) {
+    const double low = std::min(one, other);
+    const double high = std::max(one, other);
+    if (low >= limit) {
+        return 0.0;
     }
-    return length;
+    return high <= limit ? 1.0 : (limit - low) / (high - low);
+}
+
+NarrowPlaces narrow_places(const Band& band,
+                           const Widths& widths,
+                           const CellRun& cells,
+                           double min_width_mm) {
+    NarrowPlaces narrow;
+    const auto first = static_cast<std::size_t>(cells.first);
+    const std::size_t last = first + static_cast<std::size_t>(cells.count);
+    narrow.least_mm = widths.across(first);
+    for (std::size_t i = first; i <= last; ++i) {
+        const double across = widths.across(i);
+        narrow.least_mm = std::min(narrow.least_mm, across);
+        narrow.widened_mm = std::max(narrow.widened_mm, min_width_mm - across);
+        if (i < last) {
+            narrow.hopeless_mm +=
+                (band.middle(i + 1) - band.middle(i)).norm() *
+                part_below(across, widths.across(i + 1), kHopelessPart * min_width_mm);
+        }
+    }
+    return narrow;
+}
+
+struct Tabs {
+    Band start;  // Towards the joint.
+    Band end;
+};
+
+Tabs make_tabs(const Band& cut, const CellRun& cells, const FitOptions& options, Fitted& fitted) {
+    Tabs tabs;
+    const auto first = static_cast<std::size_t>(cells.first);
+    const std::size_t last = first + static_cast<std::size_t>(cells.count);
+    if (options.start_tab_mm > 0.0 && first > 0) {
+        const Band before = reversed(part_of(cut, 0, first));
+        tabs.start = reversed(glue_tab(before, options.start_tab_mm, options.min_width_mm));
+        fitted.start_tab_mm = length_of(tabs.start);
+    }
+    if (options.end_tab_mm > 0.0 && last + 1 < cut.rungs()) {
+        const Band behind = part_of(cut, last, cut.rungs() - 1);
+        std::optional<ArrowTab> arrow;
+        if (options.arrow) {
+            arrow = arrow_tab(behind, options.end_tab_mm, options.min_width_mm);
+        }
+        if (arrow) {
+            fitted.arrow = arrow->arrow;
+            tabs.end = std::move(arrow->band);
+        } else {
+            tabs.end = glue_tab(behind, options.end_tab_mm, options.min_width_mm);
+        }
+        fitted.end_tab_mm = length_of(tabs.end);
+    }
+    return tabs;
 }
 
 }  // namespace
 
-Fitted fit_piece(const Unfolded& flat, int cell_count, const FitOptions& options) {
-    const auto last = static_cast<std::size_t>(cell_count);
-    const Band crimp = crimped(flat, options.crimp_thickness_mm);
-    Band cut = narrowed(crimp, options.clearance_mm, options.min_width_mm);
-    const Band tab = tab_of(cut, last, options.tab_mm);
-    cut.left.resize(last + 1);
-    cut.right.resize(last + 1);
-
+Fitted fit_piece(const Unfolded& flat, const CellRun& cells, const FitOptions& options) {
+    const Band crimp = crimped(flat, options.extra_mm);
+    const Widths widths(crimp);
+    const Band cut = with_widths(crimp, widths, options);
     Fitted fitted;
-    Ring ring(cut.right.begin(), cut.right.end());
-    ring.insert(ring.end(), tab.right.begin(), tab.right.end());
-    ring.insert(ring.end(), tab.left.rbegin(), tab.left.rend());
-    ring.insert(ring.end(), cut.left.rbegin(), cut.left.rend());
+    fitted.narrow = narrow_places(crimp, widths, cells, options.min_width_mm);
+    const Tabs tabs = make_tabs(cut, cells, options, fitted);
+    const auto first = static_cast<std::size_t>(cells.first);
+    const Band piece = part_of(cut, first, first + static_cast<std::size_t>(cells.count));
+
+    Ring ring(tabs.start.right);
+    for (const Polyline* side : {&piece.right, &tabs.end.right}) {
+        ring.insert(ring.end(), side->begin(), side->end());
+    }
+    for (const Polyline* side : {&tabs.end.left, &piece.left, &tabs.start.left}) {
+        ring.insert(ring.end(), side->rbegin(), side->rend());
+    }
     fitted.outline = snapped(ring);
-    fitted.length_mm = centre_length(cut);
-    if (tab.rungs() > 0) {
-        fitted.length_mm += (tab.middle(0) - cut.middle(last)).norm() + centre_length(tab);
-    }
-    for (std::size_t i = 0; i <= last; ++i) {
-        fitted.narrow_rungs += crimp.width(i) < options.min_width_mm ? 1 : 0;
-    }
-    fitted.left = std::move(cut.left);
-    fitted.right = std::move(cut.right);
+    fitted.between_mm = length_of(piece);
+    fitted.length_mm = fitted.start_tab_mm + fitted.between_mm + fitted.end_tab_mm;
+    fitted.left = piece.left;
+    fitted.right = piece.right;
     return fitted;
 }
 

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <limits>
-#include <numbers>
-#include <optional>
 
 #include <polyclipping/clipper.hpp>
 
 #include "fab/strips/overlap.h"
+#include "fab/strips/parting_plan.h"
+#include "fab/strips/sheet_fit.h"
 
 namespace leafcutter::fab {
 
@@ -18,58 +16,15 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Joints whose turnings differ by less show equally little.
-constexpr double kSameTurningDeg = 1.0;
+// Evenness of lengths against joints that show: a piece half as long again as the mean costs a
+// tenth of a joint in full sight.
+constexpr double kEvenness = 0.4;
 
-// Sheets are taken this much smaller, for placements that are rounded.
-constexpr double kSheetSlackMm = 0.01;
+// An arrow on a shorter tab would not hold.
+constexpr double kLeastArrowMm = 6.0;
 
 Vector2d middle(const Unfolded& flat, std::size_t rung) {
     return (flat.left[rung] + flat.right[rung]) / 2.0;
-}
-
-std::vector<Vector2d> convex_hull(Ring points) {
-    std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
-        return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-    });
-    std::vector<Vector2d> hull;
-    const auto grow = [&](std::size_t base, const Vector2d& point) {
-        const auto left_turn = [&]() {
-            const Vector2d u = hull.back() - hull[hull.size() - 2];
-            const Vector2d v = point - hull.back();
-            return u.x() * v.y() - u.y() * v.x() > 0.0;
-        };
-        while (hull.size() >= base + 2 && !left_turn()) {
-            hull.pop_back();
-        }
-        hull.push_back(point);
-    };
-    for (const Vector2d& point : points) {
-        grow(0, point);
-    }
-    const std::size_t base = hull.size() - 1;
-    for (auto it = points.rbegin() + 1; it != points.rend(); ++it) {
-        grow(base, *it);
-    }
-    hull.pop_back();
-    return hull;
-}
-
-struct Extent {
-    double width = 0.0;
-    double height = 0.0;
-};
-
-Extent extent_along(const std::vector<Vector2d>& hull, const Vector2d& x) {
-    const Vector2d y(-x.y(), x.x());
-    Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
-    Vector2d high = -low;
-    for (const Vector2d& point : hull) {
-        const Vector2d turned(x.dot(point), y.dot(point));
-        low = low.cwiseMin(turned);
-        high = high.cwiseMax(turned);
-    }
-    return {high.x() - low.x(), high.y() - low.y()};
 }
 
 // The largest contour of `ring` grown a little: for a cell too thin to be an outline of its own.
@@ -95,16 +50,37 @@ Ring thickened(const Ring& ring, double by_mm) {
     return result;
 }
 
-int ordinal_of(const Strip& strip) {
-    int ordinal = 0;
-    if (strip.id.size() > 1) {
-        std::from_chars(strip.id.data() + 1, strip.id.data() + strip.id.size(), ordinal);
+// A cell of its own that is no strip: as long and as wide as the middle of it.
+Ring oblong(const Unfolded& flat, double min_width_mm) {
+    const Vector2d from = middle(flat, 0);
+    const Vector2d way = middle(flat, 1) - from;
+    Vector2d along = way.stableNormalized();
+    if (along.squaredNorm() < 0.5) {
+        along = Vector2d::UnitX();
     }
-    return ordinal;
+    const double length = std::max(way.norm(), min_width_mm);
+    const double width = std::max({(flat.left[0] - flat.right[0]).norm(),
+                                   (flat.left[1] - flat.right[1]).norm(), min_width_mm, 0.05});
+    const Vector2d half = width / 2.0 * Vector2d(-along.y(), along.x());
+    return snapped(
+        {from - half, from + length * along - half, from + length * along + half, from + half});
 }
 
 // What speaks against a piece.
 enum class Verdict { Good, TooLarge, Overlaps };
+
+// A strip of an unfolding laid straight on past an end.
+void lay_straight_on(double length_mm, bool at_end, Unfolded& flat) {
+    const auto extend = [&](std::size_t rung, std::size_t inner) {
+        const Vector2d way = (middle(flat, rung) - middle(flat, inner)).stableNormalized();
+        return std::array<Vector2d, 2>{flat.left[rung] + length_mm * way,
+                                       flat.right[rung] + length_mm * way};
+    };
+    const std::size_t last = flat.left.size() - 1;
+    const auto [left, right] = at_end ? extend(last, last - 1) : extend(0, 1);
+    flat.left.insert(at_end ? flat.left.end() : flat.left.begin(), left);
+    flat.right.insert(at_end ? flat.right.end() : flat.right.begin(), right);
+}
 
 class Parter {
 public:
@@ -114,194 +90,271 @@ public:
            const SplitOptions& options)
         : mesh_(mesh),
           cells_(cells),
-          closed_(strip.closed),
+          strip_(strip),
           options_(options),
           total_(static_cast<int>(strip.quads.size())),
-          beyond_(static_cast<int>(strip.beyond.size())) {
-        const Unfolded whole = unfold(mesh, cells, {0, total_ + (closed_ ? 1 : beyond_)});
-        start_ = closed_ ? opening_cell(whole, total_, ordinal_of(strip)) : 0;
+          beyond_(static_cast<int>(strip.beyond.size())),
+          whole_(unfold(mesh, cells, {0, total_ + (strip.closed ? 1 : beyond_)})) {
+        at_.push_back(0.0);
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            steps_.push_back((middle(whole, i + 1) - middle(whole, i)).norm());
+            steps_.push_back((middle(whole_, i + 1) - middle(whole_, i)).norm());
+            at_.push_back(at_.back() + steps_.back() + extra(static_cast<int>(i)));
         }
     }
 
-    Parting part() {
-        Parting greedy = part_with(total_);
-        const int count = static_cast<int>(greedy.pieces.size());
-        if (count < 2) {
-            return greedy;
-        }
-        Parting even = part_with((total_ + count - 1) / count);
-        if (even.pieces.size() != greedy.pieces.size()) {
-            return greedy;
-        }
-        even.overlaps = greedy.overlaps;
-        return even;
+    Parting part(const StripPlaces& places) {
+        PartingProblem problem;
+        problem.cells = total_;
+        problem.closed = strip_.closed;
+        problem.evenness = kEvenness;
+        problem.joint_cost = joint_costs({.strip = strip_,
+                                          .cells = cells_,
+                                          .whole = whole_,
+                                          .crossings = places.crossings,
+                                          .tab_mm = options_.tab_mm,
+                                          .joints = places.joints});
+        problem.length.assign(steps_.begin(), steps_.begin() + total_);
+        problem.good = [this](int first, int count) {
+            return verdict(first, count) == Verdict::Good;
+        };
+        return pieces_at(plan_parting(problem));
     }
 
 private:
-    struct Trial {
-        CutPiece piece;
-        Verdict verdict = Verdict::Good;
-    };
-
-    Parting part_with(int most) {
+    Parting pieces_at(const std::vector<int>& firsts) {
         Parting parting;
-        int done = 0;
-        while (done < total_) {
-            const int limit = std::min(most, total_ - done);
-            Verdict against = Verdict::Good;
-            parting.pieces.push_back(longest(done, limit, against));
-            done += parting.pieces.back().run.count;
-            parting.overlaps += against == Verdict::Overlaps ? 1 : 0;
+        for (std::size_t i = 0; i < firsts.size(); ++i) {
+            const int behind =
+                i + 1 < firsts.size() ? firsts[i + 1] : total_ + (strip_.closed ? firsts[0] : 0);
+            const int count = behind - firsts[i];
+            parting.pieces.push_back(best(firsts[i], count));
+            const bool goes_on = firsts.size() > 1 && (strip_.closed || behind < total_);
+            parting.overlaps += goes_on && lies_on_itself(firsts[i], 2 * count) ? 1 : 0;
         }
         return parting;
     }
 
-    // The longest good piece from cell `done` on, at most `limit` cells; `against` says what
-    // stopped it.
-    CutPiece longest(int done, int limit, Verdict& against) {
-        Trial best = attempt(done, limit, options_.fit);
-        against = best.verdict;
-        if (best.verdict == Verdict::Good) {
-            return std::move(best.piece);
-        }
-        int good =
-            0;  // Length and self-overlap only grow with the cells: bisection finds the last good.
-        for (int bad = limit; bad - good > 1;) {
-            const int count = (good + bad) / 2;
-            Trial trial = attempt(done, count, options_.fit);
-            if (trial.verdict == Verdict::Good) {
-                good = count;
-                best = std::move(trial);
-            } else {
-                bad = count;
-                against = trial.verdict;
-            }
-        }
-        return good > 0 ? std::move(best.piece) : single_cell(done);
+    // Whether a run of so many cells, or as many as there are, would lie on itself.
+    bool lies_on_itself(int first, int count) const {
+        const int most = strip_.closed ? total_ : total_ - first;
+        return verdict(first, std::min(most, count)) == Verdict::Overlaps;
     }
 
-    // One cell that is no good as it is: without tab, then without clearance and crimp, then
-    // thickened.
-    CutPiece single_cell(int done) {
-        FitOptions bare = options_.fit;
-        bare.tab_mm = 0.0;
-        Trial trial = attempt(done, 1, bare);
-        if (trial.verdict != Verdict::Good) {
-            bare.clearance_mm = 0.0;
-            bare.crimp_thickness_mm = 0.0;
-            trial = attempt(done, 1, bare);
-        }
-        if (!is_simple(trial.piece.fitted.outline)) {
-            const Unfolded& flat = trial.piece.flat;
-            trial.piece.fitted.outline =
-                thickened({flat.right[0], flat.right[1], flat.left[1], flat.left[0]}, 0.05);
-        }
-        trial.piece.fits_sheet =
-            fits_sheet(trial.piece.fitted.outline, options_.usable_sheet, options_.rotation);
-        return std::move(trial.piece);
+    double extra(int cell) const {
+        const auto at = static_cast<std::size_t>(strip_.closed ? cell % total_ : cell);
+        return at < options_.extra_mm.size() ? options_.extra_mm[at] : 0.0;
     }
 
-    // Cells behind a piece that its tab may lie on.
-    int tab_cells(int done, int count, double tab_mm) const {
-        const int available = closed_ ? std::max(1, total_ / 2) : total_ + beyond_ - done - count;
-        double length = 0.0;
-        int needed = 0;
-        while (needed < available && length < tab_mm) {
-            const int cell = start_ + done + count + needed;
-            length += steps_[static_cast<std::size_t>(closed_ ? cell % total_ : cell)];
-            ++needed;
-        }
-        return needed;
+    double step(int cell) const {
+        return steps_[static_cast<std::size_t>(strip_.closed ? cell % total_ : cell)];
     }
 
-    Trial attempt(int done, int count, const FitOptions& fit) const {
-        Trial trial;
-        CutPiece& piece = trial.piece;
-        piece.run = {(start_ + done) % total_, count};
-        const int under_tab = tab_cells(done, count, fit.tab_mm);
-        piece.has_tab = under_tab > 0;
-        piece.flat = unfold(mesh_, cells_, {piece.run.first, count + under_tab});
-        piece.fitted = fit_piece(piece.flat, count, fit);
+    // Length along the middle of a run, crimp and all.
+    double length(int first, int count) const {
+        const auto wrapped = static_cast<std::size_t>(total_);
+        const auto from = static_cast<std::size_t>(first);
+        const std::size_t to = from + static_cast<std::size_t>(count);
+        return to <= wrapped ? at_[to] - at_[from] : at_[wrapped] - at_[from] + at_[to - wrapped];
+    }
+
+    // What lies past the ends of a run for its tabs.
+    struct Room {
+        int before = 0;  // Cells.
+        int behind = 0;
+        bool straight_start = false;  // Else laid straight on, glued to another cylinder.
+        bool straight_end = false;
+    };
+
+    struct TabLengths {
+        double start = 0.0;
+        double end = 0.0;
+    };
+
+    bool at_end(int first, int count) const { return !strip_.closed && first + count == total_; }
+
+    // Cells from `cell` on, of at most `available`, that a tab of this length lies on.
+    int cells_under(double tab_mm, int cell, int available, int way) const {
+        double covered = 0.0;
+        int count = 0;
+        while (count < available && covered < tab_mm) {
+            const int at = strip_.closed ? ((cell + way * count) % total_ + total_) % total_
+                                         : cell + way * count;
+            covered += step(at);
+            ++count;
+        }
+        return count;
+    }
+
+    Room room(int first, int count, const TabLengths& tabs) const {
+        const int half = std::max(1, total_ / 2);
+        const int behind = strip_.closed ? half : total_ + beyond_ - first - count;
+        const int before = strip_.closed ? half : first;
+        Room room;
+        if (tabs.end > 0.0) {
+            room.straight_end = at_end(first, count) && strip_.glued_end && beyond_ == 0;
+            room.behind = room.straight_end ? 0 : cells_under(tabs.end, first + count, behind, 1);
+        }
+        if (tabs.start > 0.0) {
+            room.straight_start =
+                !strip_.closed && first == 0 && (strip_.glued_start || strip_.follows);
+            room.before = room.straight_start ? 0 : cells_under(tabs.start, first - 1, before, -1);
+        }
+        return room;
+    }
+
+    // The tabs that a run has by rule. Joint::Cell: all of the first cell behind it.
+    TabLengths usual_tabs(int first, int count) const {
+        TabLengths tabs{.start = 0.0, .end = options_.tab_mm};
+        const bool last = at_end(first, count);
+        if (options_.joint == Joint::Slot) {
+            tabs.end = std::max(tabs.end, kLeastArrowMm);
+        }
+        if (options_.joint == Joint::Cell && (!last || beyond_ > 0)) {
+            tabs.end = step(first + count) + 1e-6;
+        }
+        if (last && beyond_ == 0 && !strip_.glued_end) {
+            tabs.end = 0.0;
+        }
+        if (!strip_.closed && first == 0 && strip_.glued_start) {
+            tabs.start = options_.tab_mm;
+        }
+        return tabs;
+    }
+
+    CutPiece made(int first, int count, const TabLengths& tabs, Widening widening) const {
+        const Room room = this->room(first, count, tabs);
+        CutPiece piece;
+        piece.run = {first % total_, count};
+        piece.before = room.before;
+        const int from = first - room.before;
+        piece.flat = unfold(mesh_, cells_,
+                            {strip_.closed ? (from % total_ + total_) % total_ : from,
+                             room.before + count + room.behind});
+        FitOptions fit;
+        fit.clearance_mm = options_.clearance_mm;
+        fit.min_width_mm = options_.min_width_mm;
+        fit.widening = widening;
+        fit.start_tab_mm = tabs.start;
+        fit.end_tab_mm = tabs.end;
+        fit.arrow = options_.joint == Joint::Slot && !room.straight_end;
+        for (int i = 0; i < room.before + count + room.behind; ++i) {
+            const int cell = from + i + (strip_.closed ? total_ : 0);
+            fit.extra_mm.push_back(extra(cell));
+        }
+        if (room.straight_end) {
+            lay_straight_on(tabs.end, true, piece.flat);
+            fit.extra_mm.push_back(0.0);
+        }
+        if (room.straight_start) {
+            lay_straight_on(tabs.start, false, piece.flat);
+            fit.extra_mm.insert(fit.extra_mm.begin(), 0.0);
+            ++piece.before;
+        }
+        piece.fitted = fit_piece(piece.flat, {piece.before, count}, fit);
+        piece.widened = widening != Widening::None || piece.fitted.narrow.widened_mm <= 0.0;
+        return piece;
+    }
+
+    Verdict judge(const CutPiece& piece) const {
         const Ring& outline = piece.fitted.outline;
         if (piece.fitted.length_mm > options_.max_piece_mm ||
             !fits_sheet(outline, options_.usable_sheet, options_.rotation)) {
-            trial.verdict = Verdict::TooLarge;
-        } else if (!is_simple(outline) || !keeps_gap(outline, options_.self_gap_mm)) {
-            trial.verdict = Verdict::Overlaps;
+            return Verdict::TooLarge;
         }
-        return trial;
+        if (!is_simple(outline) || !keeps_gap(outline, options_.self_gap_mm)) {
+            return Verdict::Overlaps;
+        }
+        return Verdict::Good;
+    }
+
+    // The first of several ways to widen that makes a good piece; else the last one tried.
+    CutPiece attempt(int first, int count, const TabLengths& tabs, Verdict& verdict) const {
+        CutPiece piece = made(first, count, tabs, Widening::OuterSide);
+        verdict = judge(piece);
+        if (verdict != Verdict::Overlaps || piece.fitted.narrow.widened_mm <= 0.0) {
+            return piece;
+        }
+        for (const Widening widening : {Widening::BothSides, Widening::None}) {
+            piece = made(first, count, tabs, widening);
+            verdict = judge(piece);
+            if (verdict == Verdict::Good) {
+                break;
+            }
+        }
+        return piece;
+    }
+
+    Verdict verdict(int first, int count) const {
+        if (length(first, count) > options_.max_piece_mm) {
+            return Verdict::TooLarge;
+        }
+        Verdict result = Verdict::Good;
+        attempt(first, count, usual_tabs(first, count), result);
+        return result;
+    }
+
+    // The piece with its usual tabs, with longer ones if it is too short; a single cell that is no
+    // good without any.
+    CutPiece best(int first, int count) const {
+        TabLengths tabs = usual_tabs(first, count);
+        Verdict verdict = Verdict::Good;
+        CutPiece piece = attempt(first, count, tabs, verdict);
+        if (verdict != Verdict::Good) {
+            return count == 1 ? single_cell(first) : piece;
+        }
+        const double lacking = options_.min_length_mm - piece.fitted.length_mm;
+        if (lacking <= 0.0) {
+            return piece;
+        }
+        const bool joined_start =
+            strip_.closed || first > 0 || strip_.follows || strip_.glued_start;
+        const bool joined_end = piece.fitted.end_tab_mm > 0.0;
+        const double share = joined_start && joined_end ? lacking / 2.0 : lacking;
+        tabs.start += joined_start ? share : 0.0;
+        tabs.end += joined_end ? share : 0.0;
+        CutPiece longer = attempt(first, count, tabs, verdict);
+        return verdict == Verdict::Good ? longer : piece;
+    }
+
+    // One cell that is no good as it is: without tabs, then as it is, then as an oblong.
+    CutPiece single_cell(int first) const {
+        Verdict verdict = Verdict::Good;
+        CutPiece piece = attempt(first, 1, {}, verdict);
+        if (!is_simple(piece.fitted.outline)) {
+            const Unfolded& flat = piece.flat;
+            piece.fitted.left = flat.left;
+            piece.fitted.right = flat.right;
+            piece.widened = false;
+            piece.fitted.outline =
+                thickened({flat.right[0], flat.right[1], flat.left[1], flat.left[0]}, 0.05);
+            if (!is_simple(piece.fitted.outline)) {
+                piece.fitted.outline = oblong(flat, options_.min_width_mm);
+            }
+        }
+        piece.fits_sheet =
+            fits_sheet(piece.fitted.outline, options_.usable_sheet, options_.rotation);
+        return piece;
     }
 
     const geometry::QuadMesh& mesh_;
     const std::vector<WalkedCell>& cells_;
-    bool closed_;
+    const Strip& strip_;
     const SplitOptions& options_;
     int total_;
     int beyond_;  // Cells past the end that a tab may lie on.
-    int start_ = 0;
-    std::vector<double> steps_;  // Length of the middle line in each cell.
+    Unfolded whole_;
+    std::vector<double> steps_;  // Length of the middle line in each cell,
+    std::vector<double> at_;     // and before it, with crimp.
 };
 
 }  // namespace
 
-int opening_cell(const Unfolded& whole, int cell_count, int ordinal) {
-    std::vector<double> turning(static_cast<std::size_t>(cell_count), 0.0);
-    double least = std::numeric_limits<double>::infinity();
-    for (int i = 1; i <= cell_count; ++i) {
-        const auto rung = static_cast<std::size_t>(i);
-        const Vector2d in = middle(whole, rung) - middle(whole, rung - 1);
-        const Vector2d out = middle(whole, rung + 1) - middle(whole, rung);
-        const double angle = std::abs(std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out)));
-        turning[rung % turning.size()] = angle * 180.0 / std::numbers::pi;
-        least = std::min(least, turning[rung % turning.size()]);
-    }
-    const double phase = ordinal * (std::numbers::phi - 1.0);
-    const int wanted = static_cast<int>((phase - std::floor(phase)) * cell_count);
-    for (int i = 0; i < cell_count; ++i) {
-        const int cell = (wanted + i) % cell_count;
-        if (turning[static_cast<std::size_t>(cell)] <= least + kSameTurningDeg) {
-            return cell;
-        }
-    }
-    return wanted;
-}
-
-bool fits_sheet(const Ring& outline, const SheetSize& usable, Rotation rotation) {
-    if (outline.size() < 3) {
-        return false;
-    }
-    const std::vector<Vector2d> hull = convex_hull(outline);
-    const double width = usable.width_mm - kSheetSlackMm;
-    const double height = usable.height_mm - kSheetSlackMm;
-    const auto upright = [&](const Extent& e) { return e.width <= width && e.height <= height; };
-    const auto lying = [&](const Extent& e) { return e.height <= width && e.width <= height; };
-    const Extent as_drawn = extent_along(hull, Vector2d::UnitX());
-    if (upright(as_drawn)) {
-        return true;
-    }
-    if (rotation == Rotation::Half || rotation == Rotation::Fixed) {
-        return false;
-    }
-    if (lying(as_drawn)) {
-        return true;
-    }
-    for (std::size_t i = 0; i < hull.size() && rotation == Rotation::Free; ++i) {
-        const Vector2d edge = hull[(i + 1) % hull.size()] - hull[i];
-        const Extent turned = extent_along(hull, edge.stableNormalized());
-        if (upright(turned) || lying(turned)) {
-            return true;
-        }
-    }
-    return false;
-}
-
 Parting part_strip(const geometry::QuadMesh& mesh,
                    const std::vector<WalkedCell>& cells,
                    const Strip& strip,
+                   const StripPlaces& places,
                    const SplitOptions& options) {
-    return Parter(mesh, cells, strip, options).part();
+    return Parter(mesh, cells, strip, options).part(places);
 }
 
 }  // namespace leafcutter::fab

@@ -26,6 +26,9 @@ struct Strip {
     std::vector<int> quads;   // In walking order.
     std::string next;         // The strip that its end is joined to, across a critical leaf,
     std::vector<int> beyond;  // and quads there, going on, for the tab to lie on.
+    bool follows = false;       // Another strip's `next` is this one.
+    bool glued_start = false;   // This end lies on a cylinder that it is glued to without sharing
+    bool glued_end = false;     // vertices, and the tabs are on this side of the joint.
     std::vector<std::string> pieces;  // Ids, in walking order.
 };
 

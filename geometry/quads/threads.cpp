@@ -25,7 +25,7 @@ public:
     bool taken(int quad) const { return taken_[static_cast<std::size_t>(quad)]; }
 
     Thread trace(int seed, Family family) {
-        Thread thread{.family = family, .closed = false, .quads = {seed}, .next = -1};
+        Thread thread{.family = family, .closed = false, .quads = {seed}, .next = -1, .leaves = {}};
         taken_[static_cast<std::size_t>(seed)] = true;
         thread.closed = walk(seed, forward_side_, thread.quads);
         if (!thread.closed) {
@@ -77,41 +77,31 @@ bool leaf_between(const QuadMesh& mesh, Family family, int quad, int next) {
            std::abs(one.row - other.row) != 1;
 }
 
-// The parts of a thread between critical leaves.
-std::vector<Thread> parted(const QuadMesh& mesh, Thread thread) {
+// Places of quads in a thread that have a critical leaf before them.
+std::vector<int> leaves_in(const QuadMesh& mesh, const Thread& thread) {
     const std::size_t count = thread.quads.size();
-    std::vector<std::size_t> firsts;  // Places of quads with a leaf before them.
+    std::vector<int> leaves;
     for (std::size_t i = thread.closed ? 0 : 1; i < count; ++i) {
         const int before = thread.quads[(i + count - 1) % count];
         if (leaf_between(mesh, thread.family, before, thread.quads[i])) {
-            firsts.push_back(i);
+            leaves.push_back(static_cast<int>(i));
         }
     }
-    if (firsts.empty()) {
-        return {std::move(thread)};
-    }
-    if (thread.closed) {
-        const auto turn = static_cast<std::ptrdiff_t>(firsts.front());
-        std::rotate(thread.quads.begin(), thread.quads.begin() + turn, thread.quads.end());
-        for (std::size_t& first : firsts) {
-            first -= static_cast<std::size_t>(turn);
+    return leaves;
+}
+
+// The leaves of `whole` inside the part that begins at `from`.
+std::vector<int> leaves_of_part(const Thread& whole, int from, int count) {
+    const int total = static_cast<int>(whole.quads.size());
+    std::vector<int> leaves;
+    for (const int leaf : whole.leaves) {
+        const int at = (leaf - from + total) % total;
+        if (at > 0 && at < count) {
+            leaves.push_back(at);
         }
-    } else {
-        firsts.insert(firsts.begin(), 0);
     }
-    std::vector<Thread> parts;
-    for (std::size_t i = 0; i < firsts.size(); ++i) {
-        const bool last = i + 1 == firsts.size();
-        const auto from = thread.quads.begin() + static_cast<std::ptrdiff_t>(firsts[i]);
-        const auto to = last ? thread.quads.end()
-                             : thread.quads.begin() + static_cast<std::ptrdiff_t>(firsts[i + 1]);
-        Thread part{.family = thread.family, .closed = false, .quads = {from, to}, .next = -1};
-        if (!last || thread.closed) {
-            part.next = last ? thread.quads.front() : *to;
-        }
-        parts.push_back(std::move(part));
-    }
-    return parts;
+    std::sort(leaves.begin(), leaves.end());
+    return leaves;
 }
 
 }  // namespace
@@ -124,22 +114,60 @@ std::vector<Thread> trace_threads(const QuadMesh& mesh, Family family, ThreadEnd
             threads.push_back(tracer.trace(quad, family));
         }
     }
+    for (Thread& thread : threads) {
+        thread.leaves = leaves_in(mesh, thread);
+    }
     if (ends == ThreadEnds::Through) {
         return threads;
     }
     std::vector<Thread> parts;
     for (Thread& thread : threads) {
-        for (Thread& part : parted(mesh, std::move(thread))) {
+        const std::vector<int> leaves = thread.leaves;
+        for (Thread& part : parted(std::move(thread), leaves)) {
             parts.push_back(std::move(part));
         }
     }
+    sort_by_smallest_quad(parts);
+    return parts;
+}
+
+std::vector<Thread> parted(Thread thread, const std::vector<int>& firsts) {
+    if (firsts.empty()) {
+        return {std::move(thread)};
+    }
+    const int total = static_cast<int>(thread.quads.size());
+    std::vector<int> begins = firsts;
+    if (!thread.closed) {
+        begins.insert(begins.begin(), 0);
+    }
+    std::vector<Thread> parts;
+    for (std::size_t i = 0; i < begins.size(); ++i) {
+        const bool last = i + 1 == begins.size();
+        const int from = begins[i];
+        const int behind = last ? (thread.closed ? begins.front() + total : total) : begins[i + 1];
+        Thread part{
+            .family = thread.family, .closed = false, .quads = {}, .next = -1, .leaves = {}};
+        for (int k = from; k < behind; ++k) {
+            part.quads.push_back(thread.quads[static_cast<std::size_t>(k % total)]);
+        }
+        part.leaves = leaves_of_part(thread, from, behind - from);
+        if (!last || thread.closed) {
+            part.next = thread.quads[static_cast<std::size_t>(behind % total)];
+        } else {
+            part.next = thread.next;
+        }
+        parts.push_back(std::move(part));
+    }
+    return parts;
+}
+
+void sort_by_smallest_quad(std::vector<Thread>& threads) {
     const auto smallest = [](const Thread& thread) {
         return *std::min_element(thread.quads.begin(), thread.quads.end());
     };
-    std::sort(parts.begin(), parts.end(), [&](const Thread& one, const Thread& other) {
+    std::sort(threads.begin(), threads.end(), [&](const Thread& one, const Thread& other) {
         return smallest(one) < smallest(other);
     });
-    return parts;
 }
 
 }  // namespace leafcutter::geometry

@@ -15,10 +15,11 @@ enum class Family { Weft, Warp };
 
 struct Thread {
     Family family = Family::Weft;
-    bool closed = false;     // The last cell touches the first across the right edge.
-    std::vector<int> quads;  // In walking order: growing g for weft, growing f for warp, in the
-                             // cylinder where the whole run was begun.
-    int next = -1;           // The quad behind the last, where a critical leaf ends the thread.
+    bool closed = false;      // The last cell touches the first across the right edge.
+    std::vector<int> quads;   // In walking order: growing g for weft, growing f for warp, in the
+                              // cylinder where the whole run was begun.
+    int next = -1;            // The quad behind the last, where a critical leaf ends the thread.
+    std::vector<int> leaves;  // Places of quads with a critical leaf before them, which it crosses.
 };
 
 enum class ThreadEnds {
@@ -29,5 +30,12 @@ enum class ThreadEnds {
 // All threads of a family, ordered by their smallest quad index. Follows shared edges only, so that
 // any grid topology works (twisted tori, conforming junctions).
 std::vector<Thread> trace_threads(const QuadMesh& mesh, Family family, ThreadEnds ends);
+
+// The parts of `thread` between the quads at `firsts`, places in its quads in growing order. Of a
+// closed thread the first part begins at the first of them, else at its own beginning. None: the
+// thread itself.
+std::vector<Thread> parted(Thread thread, const std::vector<int>& firsts);
+
+void sort_by_smallest_quad(std::vector<Thread>& threads);
 
 }  // namespace leafcutter::geometry

@@ -6,7 +6,7 @@
 #include "fab/strips/labels.h"
 #include "fab/strips/marks.h"
 #include "fab/strips/overlap.h"
-#include "fab/strips/split.h"
+#include "fab/strips/sheet_fit.h"
 #include "fab/strips/strips.h"
 #include "tests/support/quad_grids.h"
 
