@@ -15,6 +15,7 @@
 #include "fab/job_result.h"
 #include "fab/nest/family_nest.h"
 #include "fab/package/package_files.h"
+#include "fab/strips/link.h"
 #include "fab/strips/marks.h"
 #include "fab/strips/strips.h"
 #include "fab/utf8.h"
@@ -282,25 +283,33 @@ private:
         limits.min_length_mm = material.min_length_mm;
         limits.rotation = result_.params.nesting.rotation;
         limits.self_gap_mm = material.kerf_mm + kSelfGapMm;
+        limits.kerf_mm = material.kerf_mm;
+        limits.min_radius_mm = material.min_radius_mm;
+        limits.crossed_mm =
+            (&material == &result_.weft ? result_.warp : result_.weft).thickness_mm;
         return limits;
     }
 
     void make_strips_and_pieces(const Context& context) {
         const FitParams fit = fit_of();
         const std::array limits = {limits_of(result_.weft), limits_of(result_.warp)};
-        result_.strips = make_strips(result_.quads, fit.columns);
+        result_.strips =
+            make_strips(result_.quads, fit.columns, through_limits(fit, limits.back()));
+        refuse_hopeless_strips(result_.strips, result_.quads, limits);
         result_.weave = weave_cells(result_.quads, result_.params.weave);
         result_.crossings = crossings_of(result_.strips, result_.weave);
+        JointMap joints(result_.quads);
         for (std::size_t i = 0; i < result_.strips.size(); ++i) {
             Strip& strip = result_.strips[i];
             const PieceLimits& limit = limits[strip.family == Family::Weft ? 0 : 1];
-            const PieceRules rules{fit, limit, result_.crossings[i]};
+            const PieceRules rules{fit, limit, result_.crossings[i], &joints};
             for (Piece& piece : make_pieces(strip, result_.quads, rules, warnings_)) {
                 result_.pieces.push_back(std::move(piece));
             }
             context.report(kStrips.name,
                            static_cast<double>(i + 1) / static_cast<double>(result_.strips.size()));
         }
+        link_pieces(result_.strips, limits, result_.pieces, warnings_);
         mark_pieces(result_.pieces, result_.strips, result_.crossings, fit, warnings_);
         if (!result_.weave.seams.empty()) {
             warnings_.push_back(
