@@ -74,8 +74,9 @@ enum class Joint { Glue, Cell, Slot };
 
 struct FitParams {
     ColumnRuns columns = ColumnRuns::PerCylinder;
-    double clearance_mm = 0.2;  // Taken off each long side of a strip.
-    bool crimp = true;          // Lengthen cells for the way over and under crossing strips.
+    double clearance_mm = 0.2;    // Taken off each long side of a strip.
+    bool clearance_auto = false;  // As much as the materials' thickness needs, instead.
+    bool crimp = true;            // Lengthen cells for the way over and under crossing strips.
     Joint joint = Joint::Glue;
     double tab_mm = 8.0;  // Length of glue tabs.
     double max_piece_mm = 900.0;
@@ -107,6 +108,7 @@ struct OutputParams {
     Dialect dialect = Dialect::Grbl;
     std::string device;
     std::string machine;  // Of the materials' settings; empty: their defaults.
+    bool models = true;   // The woven model as STL, OBJ and glTF.
 };
 
 struct JobParams {

@@ -17,6 +17,7 @@
 #include "fab/strips/crossings.h"
 #include "fab/strips/strip.h"
 #include "fab/weave/assembly.h"
+#include "fab/weave/thickness_report.h"
 #include "fab/weave/weave.h"
 #include "fab/weave/woven_model.h"
 #include "geometry/foliation.h"
@@ -79,6 +80,7 @@ struct JobResult {
     Crossings crossings;
     Assembly assembly;
     WovenModel woven;
+    ThicknessReport thickness;
     Bill bill;
     Material weft;
     Material warp;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -14,6 +15,7 @@
 #include "fab/foliation_options.h"
 #include "fab/job_result.h"
 #include "fab/nest/family_nest.h"
+#include "fab/package/model_files.h"
 #include "fab/package/package_files.h"
 #include "fab/strips/link.h"
 #include "fab/strips/marks.h"
@@ -21,6 +23,7 @@
 #include "fab/utf8.h"
 #include "fab/warnings.h"
 #include "fab/weave/weave.h"
+#include "fab/woven_stage.h"
 #include "geometry/closest_point.h"
 #include "geometry/error.h"
 #include "geometry/foliation.h"
@@ -291,6 +294,7 @@ private:
     }
 
     void make_strips_and_pieces(const Context& context) {
+        result_.params.fit.clearance_mm = clearance_of(result_);
         const FitParams fit = fit_of();
         const std::array limits = {limits_of(result_.weft), limits_of(result_.warp)};
         result_.strips =
@@ -316,6 +320,7 @@ private:
                 fmt::format("the pattern breaks between {} pairs of neighbouring cells",
                             result_.weave.seams.size()));
         }
+        add_thickness(result_, warnings_, context);
     }
 
     void lay_out(const Context& context) {
@@ -356,6 +361,8 @@ private:
         files.push_back({"weave.json", weave_json(result_)});
         files.push_back({"layout.json", layout_json(result_)});
         files.push_back({"bill.csv", bill_csv(result_)});
+        std::vector<PackageFile> models = model_files(result_);
+        std::move(models.begin(), models.end(), std::back_inserter(files));
         for (std::size_t i = 0; i < result_.programs.size(); ++i) {
             const CutProgram& program = result_.programs[i];
             const std::string name = fmt::format("sheets/sheet-{:03}", program.sheet);

@@ -110,7 +110,14 @@ void read_weave(ObjectReader& reader, fab::WeaveParams& weave) {
 void read_fit(ObjectReader& reader, fab::FitParams& fit) {
     read_choice(reader, "columns", fit.columns, kColumnRuns);
     read_choice(reader, "joint", fit.joint, kJoint);
-    reader.number("clearance_mm", fit.clearance_mm, kLength);
+    if (const json* clearance = reader.get("clearance_mm"); clearance && clearance->is_string()) {
+        if (*clearance != "auto") {
+            refuse_param(reader.path_of("clearance_mm"), "must be a number or auto");
+        }
+        fit.clearance_auto = true;
+    } else {
+        reader.number("clearance_mm", fit.clearance_mm, kLength);
+    }
     reader.boolean("crimp", fit.crimp);
     reader.number("tab_mm", fit.tab_mm, kLength);
     reader.number("max_piece_mm", fit.max_piece_mm, {0.0, 20'000.0, true});
@@ -140,6 +147,7 @@ void read_output(ObjectReader& reader, fab::OutputParams& output) {
     read_choice(reader, "dialect", output.dialect, kDialects);
     reader.text("device", output.device);
     reader.text("machine", output.machine);
+    reader.boolean("models", output.models);
 }
 
 }  // namespace

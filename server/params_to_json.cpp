@@ -100,17 +100,18 @@ json params_to_json(const fab::JobParams& params) {
     } else {
         result["weave"]["pattern"] = name_of(kPatterns, params.weave.pattern);
     }
-    result["fit"] = {{"columns", name_of(kColumnRuns, params.fit.columns)},
-                     {"joint", name_of(kJoint, params.fit.joint)},
-                     {"clearance_mm", params.fit.clearance_mm},
-                     {"crimp", params.fit.crimp},
-                     {"tab_mm", params.fit.tab_mm},
-                     {"max_piece_mm", params.fit.max_piece_mm},
-                     {"labels", params.fit.labels},
-                     {"cell_marks", name_of(kCellMarks, params.fit.cell_marks)},
-                     {"weave_marks", params.fit.weave_marks},
-                     {"score_deg", params.fit.score_deg},
-                     {"text_mm", params.fit.text_mm}};
+    result["fit"] = {
+        {"columns", name_of(kColumnRuns, params.fit.columns)},
+        {"joint", name_of(kJoint, params.fit.joint)},
+        {"clearance_mm", params.fit.clearance_auto ? json("auto") : json(params.fit.clearance_mm)},
+        {"crimp", params.fit.crimp},
+        {"tab_mm", params.fit.tab_mm},
+        {"max_piece_mm", params.fit.max_piece_mm},
+        {"labels", params.fit.labels},
+        {"cell_marks", name_of(kCellMarks, params.fit.cell_marks)},
+        {"weave_marks", params.fit.weave_marks},
+        {"score_deg", params.fit.score_deg},
+        {"text_mm", params.fit.text_mm}};
     result["material"] = {{"warp", params.material.warp}, {"weft", params.material.weft}};
     result["nesting"] = {{"time_s", params.nesting.time_s},
                          {"spacing_mm", params.nesting.spacing_mm},
@@ -119,7 +120,8 @@ json params_to_json(const fab::JobParams& params) {
                          {"seed", params.nesting.seed}};
     result["output"] = {{"dialect", name_of(kDialects, params.output.dialect)},
                         {"device", params.output.device},
-                        {"machine", params.output.machine}};
+                        {"machine", params.output.machine},
+                        {"models", params.output.models}};
     return result;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fab/material/totals.h"
+#include "fab/package/model_files.h"
 #include "fab/package/package_files.h"
 #include "fab/package/records.h"
 #include "geometry/error.h"
@@ -353,6 +354,8 @@ std::string report_json(const JobResult& job) {
                  {"strips", strips_summary_json(job)},
                  {"nesting", nesting_json(job.layout)},
                  {"cut", cut_json(job)},
+                 {"thickness", thickness_record(job)},
+                 {"woven", woven_record(job)},
                  {"timings_s", std::move(timings)},
                  {"certificate", certificate_json(job.certificate)},
                  {"warnings", std::move(warnings)}};

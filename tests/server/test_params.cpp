@@ -79,6 +79,18 @@ TEST(Params, ComeBackFromTheirJson) {
     EXPECT_EQ(whole["foliation"]["corners"], (nlohmann::json{0, 5, 7, 9}));
 }
 
+TEST(Params, TakeAClearanceThatThicknessDecides) {
+    const fab::JobParams params = params_from_json(
+        parse_params_text(R"({"fit": {"clearance_mm": "auto"}, "output": {"models": false}})"));
+    EXPECT_TRUE(params.fit.clearance_auto);
+    EXPECT_FALSE(params.output.models);
+    EXPECT_EQ(params_to_json(params)["fit"]["clearance_mm"], "auto");
+    EXPECT_EQ(params_to_json(params)["output"]["models"], false);
+    EXPECT_EQ(refusal(R"({"fit": {"clearance_mm": "wide"}})"),
+              "fit.clearance_mm: must be a number or auto");
+    EXPECT_EQ(refusal(R"({"fit": {"clearance_mm": true}})"), "fit.clearance_mm: must be a number");
+}
+
 TEST(Params, RefuseUnknownKeysByFullPath) {
     EXPECT_EQ(refusal(R"({"colour": 1})"), "colour: unknown key");
     EXPECT_EQ(refusal(R"({"grid": {"width": 1}})"), "grid.width: unknown key");
