@@ -28,6 +28,7 @@ struct Sheet {
     std::string material;
     std::string family;  // "weft", "warp" or "both" where they share the material.
     SheetSize size;      // Origin at the lower left corner, y up.
+    Ring outline;        // Of a remnant, within the size; empty: the whole rectangle.
     std::vector<Placement> placements;
 };
 

@@ -34,14 +34,14 @@ struct BoardPlan {
         bool solid = true;
     };
 
-    std::vector<Part> parts;
+    std::vector<NestPart> parts;
     std::vector<std::vector<TurnedPart>> turned;  // [part][allowed rotation]; empty if free.
     std::vector<std::size_t> part_of;             // [item]
     std::vector<Room> rooms;                      // Sheets, in the order in which they are used.
     std::vector<Fixed> fixed;
 
-    const Part& part(std::size_t item) const { return parts[part_of[item]]; }
-    bool binds(const Fixed& fixed_part, const Part& moving) const {
+    const NestPart& part(std::size_t item) const { return parts[part_of[item]]; }
+    bool binds(const Fixed& fixed_part, const NestPart& moving) const {
         return fixed_part.solid || moving.min_quality > fixed_part.quality;
     }
 };

@@ -31,13 +31,13 @@ std::vector<std::size_t> large_items(const BoardPlan& plan) {
     return order;
 }
 
-bool alike(const Part& a, const Part& b) {
+bool alike(const NestPart& a, const NestPart& b) {
     return std::abs(a.area - b.area) <= 0.01 * std::max(a.area, b.area) &&
            std::abs(a.diameter - b.diameter) <= 0.01 * std::max(a.diameter, b.diameter);
 }
 
 // Gives `position` the rotation of another part, or the nearest that it may have.
-void turn_like(const Part& part, double angle_deg, Position& position) {
+void turn_like(const NestPart& part, double angle_deg, Position& position) {
     if (part.turns_freely()) {
         position.turn = 0;
         position.angle_deg = angle_deg;

@@ -104,7 +104,7 @@ public:
     std::int64_t rows() const { return rows_; }
 
 private:
-    static void turn_to(const Part& part, double angle_deg, Position& at) {
+    static void turn_to(const NestPart& part, double angle_deg, Position& at) {
         at.angle_deg = std::remainder(angle_deg, 360.0);
         for (std::size_t i = 0; i < part.allowed_deg.size(); ++i) {
             if (std::abs(std::remainder(part.allowed_deg[i] - angle_deg, 360.0)) < 1e-6) {

@@ -81,7 +81,7 @@ Ring shifted(const Ring& ring, const Eigen::Vector2d& by) {
 
 void add_fixed(BoardPlan& plan, const Ring& ring, int bin, const InstanceZone* zone) {
     BoardPlan::Fixed fixed;
-    const Part part = make_part(ring, 0.0, {0.0});
+    const NestPart part = make_part(ring, 0.0, {0.0});
     turn_part(part, 0.0, fixed.shape);
     // Back to where it lies: the part is about its own origin.
     const auto dx = static_cast<float>(part.origin.x());
@@ -127,7 +127,7 @@ Problem make_problem(const NestInstance& instance) {
     problem.grow = kGuard * problem.scale;
     for (std::size_t i = 0; i < instance.items.size(); ++i) {
         const InstanceItem& item = instance.items[i];
-        Part part = make_part(item.outline, problem.grow, item.allowed_deg);
+        NestPart part = make_part(item.outline, problem.grow, item.allowed_deg);
         part.min_quality = item.min_quality.value_or(std::numeric_limits<int>::max());
         std::vector<TurnedPart> turned(item.allowed_deg.size());
         for (std::size_t k = 0; k < turned.size(); ++k) {
@@ -306,7 +306,7 @@ void leave_out_unplaced(Problem& problem, Packing& packing, InstanceSolution& so
 bool is_banded(const BoardPlan& plan) {
     std::size_t bands = 0;
     for (const std::size_t part : plan.part_of) {
-        const Part& p = plan.parts[part];
+        const NestPart& p = plan.parts[part];
         if (!p.turns_freely()) {
             return false;
         }
@@ -318,7 +318,7 @@ bool is_banded(const BoardPlan& plan) {
 // Whether each part fits between the edges of an endless strip.
 bool all_fit(const BoardPlan& plan) {
     const BoardPlan::Room& room = plan.rooms.front();
-    return std::all_of(plan.parts.begin(), plan.parts.end(), [&](const Part& part) {
+    return std::all_of(plan.parts.begin(), plan.parts.end(), [&](const NestPart& part) {
         return fitting_angle(make_shape(part.outline), {room.width, room.height}, part.allowed_deg)
             .has_value();
     });

@@ -173,7 +173,7 @@ void fill_blocks(TurnedPart& out) {
 }
 
 // Turned by the angle of cosine `c` and sine `s`.
-void fill_circles(const Part& part, double c, double s, TurnedPart& out) {
+void fill_circles(const NestPart& part, double c, double s, TurnedPart& out) {
     const std::size_t count = part.circles.size();
     const std::size_t size = padded(count);
     out.circles = count;
@@ -227,7 +227,7 @@ double largest_distance(const Ring& ring) {
 // The centre of the circle nearest to a band's middle line, by linear least squares (Kåsa, "A
 // circle fitting procedure and its error analysis", IEEE Trans. Instrum. Meas. 25, 1976); of nearly
 // straight bands, a point far to the side.
-Eigen::Vector2d bend_centre(const Part& part) {
+Eigen::Vector2d bend_centre(const NestPart& part) {
     Eigen::MatrixXd rows(part.middle.size(), 3);
     Eigen::VectorXd squares(part.middle.size());
     for (std::size_t i = 0; i < part.middle.size(); ++i) {
@@ -323,8 +323,8 @@ std::vector<BandPoint> middle_line(const Ring& ring, std::size_t count) {
     return middle;
 }
 
-Part make_part(const Ring& outline, double grow, std::vector<double> allowed_deg) {
-    Part part;
+NestPart make_part(const Ring& outline, double grow, std::vector<double> allowed_deg) {
+    NestPart part;
     part.outline = grown(outline, grow);
     const NestShape shape = make_shape(part.outline);
     part.origin = shape.centroid;
@@ -354,7 +354,7 @@ Part make_part(const Ring& outline, double grow, std::vector<double> allowed_deg
     return part;
 }
 
-void turn_part(const Part& part, double angle_deg, TurnedPart& out) {
+void turn_part(const NestPart& part, double angle_deg, TurnedPart& out) {
     // Quarter turns are exact.
     const double quarters = angle_deg / 90.0;
     const bool exact = quarters == std::round(quarters);

@@ -27,7 +27,7 @@ struct BandPoint {
     double from_start = 0.0;                          // Along the middle line.
 };
 
-struct Part {
+struct NestPart {
     Ring outline;                                      // Grown; about `origin`.
     Eigen::Vector2d origin = Eigen::Vector2d::Zero();  // Of the outline given, in its own frame.
     std::vector<Circle> circles;    // Inscribed; the largest first, or along a band.
@@ -47,7 +47,7 @@ struct Part {
 
 // `outline` is simple, with at least three vertices, in either orientation. `grow` is what is added
 // all around, never less.
-Part make_part(const Ring& outline, double grow, std::vector<double> allowed_deg);
+NestPart make_part(const Ring& outline, double grow, std::vector<double> allowed_deg);
 
 // Up to `most` circles inside the ring, disjoint, about the largest that fit one after the other.
 std::vector<Circle> inscribed_circles(const Ring& ring, std::size_t most);
@@ -78,7 +78,7 @@ struct TurnedPart {
 };
 
 // Fills `out`, whose memory is used again.
-void turn_part(const Part& part, double angle_deg, TurnedPart& out);
+void turn_part(const NestPart& part, double angle_deg, TurnedPart& out);
 void shift_part(TurnedPart& part, float dx, float dy);
 
 }  // namespace leafcutter::fab

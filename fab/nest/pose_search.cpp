@@ -14,7 +14,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-BandPoint point_at(const Part& part, double along) {
+BandPoint point_at(const NestPart& part, double along) {
     const auto count = static_cast<double>(part.middle.size());
     const double length = part.middle.back().from_start + part.middle.front().from_start;
     const double place = along / length * count - 0.5;
@@ -37,7 +37,7 @@ void turn_about(const Eigen::Vector2d& pivot, double by_deg, Position& position)
 
 // A part's smaller bounding side, by which steps are measured; of a bent band the band's width
 // counts, since its bounds are far larger than what it takes.
-double step_unit(const Part& part, const TurnedPart& shape) {
+double step_unit(const NestPart& part, const TurnedPart& shape) {
     const double side = std::min(shape.high_x - shape.low_x, shape.high_y - shape.low_y);
     return std::min(side, std::max(4.0 * part.width, 0.1 * side));
 }
@@ -48,7 +48,7 @@ float PoseSearch::loss_of(std::size_t item, const Position& position, float boun
     return board_.loss_at(item, board_.turned(item, position, scratch_), position, bound);
 }
 
-void PoseSearch::random_turn(const Part& part, Position& position) {
+void PoseSearch::random_turn(const NestPart& part, Position& position) {
     if (part.turns_freely()) {
         position.turn = 0;
         position.angle_deg = random_.between(-180.0, 180.0);
@@ -86,7 +86,7 @@ bool PoseSearch::sample(std::size_t item, Position& position) {
 }
 
 void PoseSearch::sample_near(std::size_t item, const Position& around, Position& position) {
-    const Part& part = board_.plan().part(item);
+    const NestPart& part = board_.plan().part(item);
     const TurnedPart& shape = board_.shape(item);
     const double width = shape.high_x - shape.low_x;
     const double height = shape.high_y - shape.low_y;
@@ -104,8 +104,8 @@ void PoseSearch::sample_near(std::size_t item, const Position& around, Position&
 // other's, moved sideways by both halves of a width, as well as least squares can.
 bool PoseSearch::sample_mate(std::size_t item, Position& position) {
     const std::size_t other = random_.below(board_.items());
-    const Part& a = board_.plan().part(item);
-    const Part& b = board_.plan().part(other);
+    const NestPart& a = board_.plan().part(item);
+    const NestPart& b = board_.plan().part(other);
     if (other == item || !b.is_band()) {
         return false;
     }
@@ -157,7 +157,7 @@ bool PoseSearch::sample_mate(std::size_t item, Position& position) {
 
 // About which a part turns: its origin, or else a point of a band, or the centre about which a
 // bent band slides along itself.
-Eigen::Vector2d PoseSearch::pivot(const Part& part) {
+Eigen::Vector2d PoseSearch::pivot(const NestPart& part) {
     if (!part.is_band()) {
         return Eigen::Vector2d::Zero();
     }
@@ -206,7 +206,7 @@ void PoseSearch::consider(std::size_t item, const Position& position) {
     }
 }
 
-PoseSearch::Axis PoseSearch::random_axis(const Part& part) {
+PoseSearch::Axis PoseSearch::random_axis(const NestPart& part) {
     static constexpr std::array<std::array<double, 2>, 4> kDirections{
         {{1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}}};
     if (part.turns_freely() && random_.below(3) == 0) {
@@ -218,7 +218,7 @@ PoseSearch::Axis PoseSearch::random_axis(const Part& part) {
 
 // Randomised coordinate descent; a step that fails shrinks, one that gains grows.
 void PoseSearch::descend(std::size_t item, Candidate& candidate, const Steps& steps) {
-    const Part& part = board_.plan().part(item);
+    const NestPart& part = board_.plan().part(item);
     double step_x = steps.start;
     double step_y = steps.start;
     double step_turn = part.turns_freely() ? steps.turn_start_deg : 0.0;
@@ -257,7 +257,7 @@ Candidate PoseSearch::best_for(std::size_t item) {
     constexpr int kNear = 25;
     constexpr int kAnywhere = 50;
     constexpr int kMates = 30;
-    const Part& part = board_.plan().part(item);
+    const NestPart& part = board_.plan().part(item);
     const Position now = board_.position(item);
     const double unit = step_unit(part, board_.shape(item));
     apart_ = 0.05 * unit;

@@ -46,11 +46,11 @@ private:
     bool sample(std::size_t item, Position& position);
     void sample_near(std::size_t item, const Position& around, Position& position);
     bool sample_mate(std::size_t item, Position& position);
-    void random_turn(const Part& part, Position& position);
-    Eigen::Vector2d pivot(const Part& part);
+    void random_turn(const NestPart& part, Position& position);
+    Eigen::Vector2d pivot(const NestPart& part);
     void consider(std::size_t item, const Position& position);
     void keep(const Candidate& candidate);
-    Axis random_axis(const Part& part);
+    Axis random_axis(const NestPart& part);
     void descend(std::size_t item, Candidate& candidate, const Steps& steps);
     float loss_of(std::size_t item, const Position& position, float bound);
 

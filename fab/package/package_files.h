@@ -20,7 +20,16 @@ std::string report_json(const JobResult& job);
 // The bill of materials as a table (RFC 4180): a line for each material.
 std::string bill_csv(const JobResult& job);
 
-// A page that needs nothing else and prints well.
-std::string guide_html(const JobResult& job);
+// The report and the page of some pieces of a job that are cut again (recut.h): nothing of the
+// surface.
+std::string recut_report_json(const JobResult& job);
+std::string recut_html(const JobResult& job);
+
+// The assembly guide, guide.html and guide.pdf: pages that need nothing else and print well.
+struct GuideFiles {
+    std::string html;
+    std::string pdf;
+};
+GuideFiles guide_files(const JobResult& job);
 
 }  // namespace leafcutter::fab

@@ -2,11 +2,11 @@
 
 #pragma once
 
+#include <string>
+
 #include <nlohmann/json_fwd.hpp>
 
-#include "fab/cut/cut_program.h"
-#include "fab/material/bill.h"
-#include "fab/material/material.h"
+#include "fab/job_result.h"
 
 namespace leafcutter::fab {
 
@@ -16,5 +16,15 @@ nlohmann::ordered_json material_record(const Material& material);
 nlohmann::ordered_json bill_record(const Bill& bill);
 
 nlohmann::ordered_json machine_record(const MachineProfile& machine);
+
+nlohmann::ordered_json input_record(const InputFacts& input);
+nlohmann::ordered_json nesting_record(const Layout& layout);
+nlohmann::ordered_json cut_record(const JobResult& job);
+
+// What cutting pieces of this job again needs to know: bill, materials, machine, parameters.
+void add_makings(const JobResult& job, nlohmann::ordered_json& file);
+
+// Throws geometry::Error(SelfCheck) naming a number that is not finite: JSON would hide it as null.
+std::string report_text(const nlohmann::ordered_json& report);
 
 }  // namespace leafcutter::fab

@@ -1,7 +1,6 @@
 // report.json: what was computed and how good it is.
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
@@ -11,7 +10,6 @@
 #include "fab/package/model_files.h"
 #include "fab/package/package_files.h"
 #include "fab/package/records.h"
-#include "geometry/error.h"
 #include "geometry/foliation_names.h"
 #include "geometry/quads/mean_widths.h"
 
@@ -33,13 +31,6 @@ const char* name_of(geometry::ChartShape shape) {
             break;
     }
     return "pillowcase";
-}
-
-json input_json(const InputFacts& input) {
-    return {{"file", input.file},
-            {"vertices", input.vertices},
-            {"faces", input.faces},
-            {"scale", input.scale}};
 }
 
 json surface_json(const JobResult& job) {
@@ -270,68 +261,28 @@ json strips_summary_json(const JobResult& job) {
             {"weave_seams", job.weave.seams.size()}};
 }
 
-json nesting_json(const Layout& layout) {
-    return {{"density_percent", layout.density_percent},
-            {"sheets", layout.sheets.size()},
-            {"smallest_gap_mm", layout.smallest_gap_mm},
-            {"unplaced", layout.unplaced.size()}};
-}
-
-json cut_json(const JobResult& job) {
-    double burn = 0.0;
-    double travel = 0.0;
-    double seconds = 0.0;
-    json sheets = json::array();
-    for (const CutProgram& program : job.programs) {
-        burn += program.burn_mm;
-        travel += program.travel_mm;
-        seconds += program.estimated_s;
-        sheets.push_back({{"sheet", program.sheet},
-                          {"material", program.material},
-                          {"burn_mm", program.burn_mm},
-                          {"travel_mm", program.travel_mm},
-                          {"estimated_s", program.estimated_s}});
-    }
-    return {{"burn_mm", burn},
-            {"travel_mm", travel},
-            {"estimated_s", seconds},
-            {"sheets", std::move(sheets)}};
-}
-
 json certificate_json(const Certificate& certificate) {
-    return {{"largest_deviation_relative", certificate.largest_deviation_relative},
+    return {{"holds", certificate.holds},
+            {"largest_deviation_relative", certificate.largest_deviation_relative},
             {"largest_deviation_mm", certificate.largest_deviation_mm},
-            {"edges_compared", certificate.edges_compared}};
-}
-
-// What cutting pieces of this job again needs to know.
-void add_makings(const JobResult& job, json& file) {
-    file["bill"] = bill_record(job.bill);
-    file["materials"] = json::array({material_record(job.weft)});
-    if (job.warp.id != job.weft.id) {
-        file["materials"].push_back(material_record(job.warp));
-    }
-    file["machine"] = machine_record(job.machine);
-    if (!job.params_json.empty()) {
-        file["params"] = json::parse(job.params_json);
-    }
-}
-
-// A number that is none is a mistake of ours; JSON would hide it as null.
-void check_finite(const json& value, const std::string& path) {
-    if (value.is_number_float() && !std::isfinite(value.get<double>())) {
-        throw geometry::Error(geometry::ErrorKind::SelfCheck, "report-not-finite",
-                              "report: " + path + " is not a finite number");
-    }
-    if (value.is_object()) {
-        for (const auto& item : value.items()) {
-            check_finite(item.value(), path + "." + item.key());
-        }
-    } else if (value.is_array()) {
-        for (std::size_t i = 0; i < value.size(); ++i) {
-            check_finite(value[i], fmt::format("{}[{}]", path, i));
-        }
-    }
+            {"diagonal_mm", certificate.diagonal_mm},
+            {"edges_compared", certificate.edges_compared},
+            {"largest_length_error_mm", certificate.largest_length_error_mm},
+            {"largest_disagreement_mm", certificate.largest_disagreement_mm},
+            {"largest_outline_error_mm", certificate.largest_outline_error_mm},
+            {"largest_tick_error_mm", certificate.largest_tick_error_mm},
+            {"ticks", certificate.ticks},
+            {"ticks_missing", certificate.ticks_missing},
+            {"matched_by", certificate.matched_by},
+            {"pieces", certificate.pieces},
+            {"matched_by_id", certificate.matched_by_id},
+            {"matched_by_shape", certificate.matched_by_shape},
+            {"unread", certificate.unread},
+            {"missing", certificate.missing},
+            {"duplicates", certificate.duplicates},
+            {"extra_contours", certificate.extra_contours},
+            {"mirrored", certificate.mirrored},
+            {"faults", certificate.faults}};
 }
 
 }  // namespace
@@ -346,14 +297,14 @@ std::string report_json(const JobResult& job) {
         warnings.push_back(warning);
     }
     json file = {{"format", "leafcutter-report/1"},
-                 {"input", input_json(job.input)},
+                 {"input", input_record(job.input)},
                  {"surface", surface_json(job)},
                  {"topology", topology_json(job)},
                  {"foliation", foliation_json(job)},
                  {"quality", qualities_json(job)},
                  {"strips", strips_summary_json(job)},
-                 {"nesting", nesting_json(job.layout)},
-                 {"cut", cut_json(job)},
+                 {"nesting", nesting_record(job.layout)},
+                 {"cut", cut_record(job)},
                  {"thickness", thickness_record(job)},
                  {"woven", woven_record(job)},
                  {"timings_s", std::move(timings)},
@@ -363,8 +314,7 @@ std::string report_json(const JobResult& job) {
     if (job.quads.planarisation) {
         file["quality"]["planarisation"] = planarisation_json(*job.quads.planarisation);
     }
-    check_finite(file, "");
-    return file.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+    return report_text(file);
 }
 
 }  // namespace leafcutter::fab

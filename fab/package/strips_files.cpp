@@ -53,6 +53,15 @@ json mark_json(const Mark& mark) {
     return result;
 }
 
+json tab_json(const Tab& tab) {
+    json result = {{"length_mm", tab.length_mm}, {"onto", tab.onto}};
+    if (tab.slit_width_mm > 0.0) {
+        result["slit_at_mm"] = tab.slit_at_mm;
+        result["slit_width_mm"] = tab.slit_width_mm;
+    }
+    return result;
+}
+
 json piece_json(const Piece& piece) {
     json bend = json::array();
     for (const Bend cell : piece.bend) {
@@ -61,6 +70,10 @@ json piece_json(const Piece& piece) {
     json marks = json::array();
     for (const Mark& mark : piece.marks) {
         marks.push_back(mark_json(mark));
+    }
+    json cuts = json::array();
+    for (const Polyline& cut : piece.cuts) {
+        cuts.push_back(points_json(cut));
     }
     return {{"id", piece.id},
             {"strip", piece.strip},
@@ -71,7 +84,10 @@ json piece_json(const Piece& piece) {
             {"right", points_json(piece.right)},
             {"bend", std::move(bend)},
             {"outline", points_json(piece.outline)},
-            {"marks", std::move(marks)}};
+            {"marks", std::move(marks)},
+            {"cuts", std::move(cuts)},
+            {"start_tab", tab_json(piece.start_tab)},
+            {"end_tab", tab_json(piece.end_tab)}};
 }
 
 json pattern_json(const WeaveParams& weave) {
@@ -103,12 +119,16 @@ json sheet_json(const Sheet& sheet) {
                               {"rotation_deg", placement.rotation_deg},
                               {"mirrored", placement.mirrored}});
     }
-    return {{"id", sheet.id},
-            {"material", sheet.material},
-            {"family", sheet.family},
-            {"width_mm", sheet.size.width_mm},
-            {"height_mm", sheet.size.height_mm},
-            {"placements", std::move(placements)}};
+    json result = {{"id", sheet.id},
+                   {"material", sheet.material},
+                   {"family", sheet.family},
+                   {"width_mm", sheet.size.width_mm},
+                   {"height_mm", sheet.size.height_mm},
+                   {"placements", std::move(placements)}};
+    if (!sheet.outline.empty()) {
+        result["outline"] = points_json(sheet.outline);
+    }
+    return result;
 }
 
 }  // namespace
@@ -121,6 +141,7 @@ std::string strips_json(const JobResult& job) {
                           {"cylinders", strip.cylinders},
                           {"closed", strip.closed},
                           {"quads", strip.quads},
+                          {"next", strip.next},
                           {"pieces", strip.pieces}});
     }
     json pieces = json::array();

@@ -1,14 +1,14 @@
-// Materials and what a job takes of them: bill.csv and the records of report.json.
+// What report.json says of more than one kind of job.
 
-#include <algorithm>
+#include "fab/package/records.h"
+
 #include <cmath>
 #include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "fab/package/package_files.h"
-#include "fab/package/records.h"
+#include "geometry/error.h"
 
 namespace leafcutter::fab {
 
@@ -49,25 +49,21 @@ json settings_record(const Material& material) {
     return list;
 }
 
-// A field of a table: in quotes where it needs some.
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) {
-        return text;
+// A number that is none is a mistake of ours; JSON would hide it as null.
+void check_finite(const json& value, const std::string& path) {
+    if (value.is_number_float() && !std::isfinite(value.get<double>())) {
+        throw geometry::Error(geometry::ErrorKind::SelfCheck, "report-not-finite",
+                              "report: " + path + " is not a finite number");
     }
-    std::string quoted = "\"";
-    for (const char letter : text) {
-        quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+    if (value.is_object()) {
+        for (const auto& item : value.items()) {
+            check_finite(item.value(), path + "." + item.key());
+        }
+    } else if (value.is_array()) {
+        for (std::size_t i = 0; i < value.size(); ++i) {
+            check_finite(value[i], fmt::format("{}[{}]", path, i));
+        }
     }
-    return quoted + "\"";
-}
-
-std::string csv_line(const BillLine& line) {
-    const std::string cost = line.currency.empty() ? "" : fmt::format("{:.2f}", line.cost);
-    return fmt::format("{},{},{},{},{:.1f},{:.1f},{:.2f},{:.0f},{:.0f},{:.0f},{:.0f},{},{}\r\n",
-                       csv_field(line.material), csv_field(line.name), line.sheets, line.pieces,
-                       line.strips_area_mm2 / 100.0, line.sheets_area_mm2 / 100.0, line.weight_g,
-                       line.engrave_mm, line.score_mm, line.cut_mm, line.machine_s, cost,
-                       csv_field(line.currency));
 }
 
 }  // namespace
@@ -127,14 +123,56 @@ nlohmann::ordered_json machine_record(const MachineProfile& machine) {
             {"s_max", machine.s_max}};
 }
 
-std::string bill_csv(const JobResult& job) {
-    std::string text =
-        "material,name,sheets,pieces,strips_cm2,sheets_cm2,weight_g,engrave_mm,score_mm,cut_mm,"
-        "machine_s,cost,currency\r\n";
-    for (const BillLine& line : job.bill.lines) {
-        text += csv_line(line);
+nlohmann::ordered_json input_record(const InputFacts& input) {
+    return {{"file", input.file},
+            {"vertices", input.vertices},
+            {"faces", input.faces},
+            {"scale", input.scale}};
+}
+
+nlohmann::ordered_json nesting_record(const Layout& layout) {
+    return {{"density_percent", layout.density_percent},
+            {"sheets", layout.sheets.size()},
+            {"smallest_gap_mm", layout.smallest_gap_mm},
+            {"unplaced", layout.unplaced.size()}};
+}
+
+nlohmann::ordered_json cut_record(const JobResult& job) {
+    double burn = 0.0;
+    double travel = 0.0;
+    double seconds = 0.0;
+    json sheets = json::array();
+    for (const CutProgram& program : job.programs) {
+        burn += program.burn_mm;
+        travel += program.travel_mm;
+        seconds += program.estimated_s;
+        sheets.push_back({{"sheet", program.sheet},
+                          {"material", program.material},
+                          {"burn_mm", program.burn_mm},
+                          {"travel_mm", program.travel_mm},
+                          {"estimated_s", program.estimated_s}});
     }
-    return text;
+    return {{"burn_mm", burn},
+            {"travel_mm", travel},
+            {"estimated_s", seconds},
+            {"sheets", std::move(sheets)}};
+}
+
+void add_makings(const JobResult& job, nlohmann::ordered_json& file) {
+    file["bill"] = bill_record(job.bill);
+    file["materials"] = json::array({material_record(job.weft)});
+    if (job.warp.id != job.weft.id) {
+        file["materials"].push_back(material_record(job.warp));
+    }
+    file["machine"] = machine_record(job.machine);
+    if (!job.params_json.empty()) {
+        file["params"] = json::parse(job.params_json);
+    }
+}
+
+std::string report_text(const nlohmann::ordered_json& report) {
+    check_finite(report, "");
+    return report.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace leafcutter::fab
