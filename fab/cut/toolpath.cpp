@@ -132,6 +132,9 @@ void add_piece(const Piece& piece,
             }
         }
     }
+    for (const Polyline& slit : piece.cuts) {
+        collector.add(Operation::Cut, placed(slit, placement), piece.id);
+    }
     for (const Polyline& path : kerf_paths(placed(piece.outline, placement), kerf_mm)) {
         collector.add(Operation::Cut, path, piece.id);
     }
