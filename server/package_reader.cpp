@@ -70,6 +70,9 @@ fab::Piece read_piece(const json& value) {
     for (const json& mark : value.at("marks")) {
         piece.marks.push_back(read_mark(mark));
     }
+    for (const json& cut : value.value("cuts", json::array())) {
+        piece.cuts.push_back(read_points(cut));
+    }
     return piece;
 }
 
