@@ -370,7 +370,9 @@ private:
             files.push_back({name + ".dxf", write_dxf(program)});
             files.push_back({name + ".gcode", std::move(gcode[i])});
         }
-        files.push_back({"guide.html", guide_html(result_)});
+        GuideFiles guide = guide_files(result_);
+        files.push_back({"guide.html", std::move(guide.html)});
+        files.push_back({"guide.pdf", std::move(guide.pdf)});
     }
 
     void summarise(PackageSummary& summary) const {

@@ -1,0 +1,131 @@
+#include "fab/guide/notes_chapter.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "fab/guide/wording.h"
+
+namespace leafcutter::fab::guide {
+
+namespace {
+
+constexpr std::size_t kMostBreaks = 240;
+constexpr std::size_t kMostWarnings = 60;
+
+class NotesChapter {
+public:
+    NotesChapter(const JobIndex& index, Document& document)
+        : index_(index), job_(index.job()), document_(document) {}
+
+    void add() {
+        document_.blocks.emplace_back(Heading{1, "Good to know"});
+        add_left_out();
+        add_breaks();
+        add_warnings();
+        add_checks();
+    }
+
+private:
+    void text(std::string words) {
+        document_.blocks.emplace_back(Paragraph{std::move(words), TextStyle::Body});
+    }
+
+    void add_left_out() {
+        std::vector<std::string> numbers;
+        for (std::size_t i = 0; i < job_.quads.grids.size(); ++i) {
+            if (job_.quads.grids[i].rows == 0) {
+                numbers.push_back(fmt::format("{}", i + 1));
+            }
+        }
+        if (!numbers.empty()) {
+            text(fmt::format("Too narrow for a row of its own, so left out; what it parted is "
+                             "joined directly: cylinder {}.",
+                             first_of(numbers, 40)));
+        }
+    }
+
+    std::string crossing_at(int quad) const {
+        const int weft = index_.strip_at(quad, Family::Weft);
+        const int warp = index_.strip_at(quad, Family::Warp);
+        const auto name = [&](int strip) {
+            return strip < 0 ? std::string("?") : job_.strips[static_cast<std::size_t>(strip)].id;
+        };
+        return fmt::format("{} x {}", name(weft), name(warp));
+    }
+
+    void add_breaks() {
+        const std::size_t count = job_.weave.seams.size();
+        document_.blocks.emplace_back(Heading{2, "Where the pattern breaks"});
+        if (count == 0) {
+            text("Nowhere: the pattern goes on over the whole model.");
+            return;
+        }
+        text(fmt::format("Between {} of neighbouring crossings the pattern can't go on as it should "
+                         "(the shape does not allow it everywhere). It is no mistake of yours.",
+                         counted(count, "pair")));
+        Table table;
+        table.columns = {{"Crossing", Align::Left, 1.0}, {"beside", Align::Left, 1.0}};
+        table.abreast = 3;
+        for (std::size_t i = 0; i < std::min(count, kMostBreaks); ++i) {
+            const auto& [one, other] = job_.weave.seams[i];
+            table.rows.push_back({Cell{crossing_at(one), {}, false, {}},
+                                  Cell{crossing_at(other), {}, false, {}}});
+        }
+        document_.blocks.emplace_back(std::move(table));
+        if (count > kMostBreaks) {
+            text(fmt::format("And {} more: weave.json lists all.", count - kMostBreaks));
+        }
+    }
+
+    void add_warnings() {
+        if (job_.warnings.empty()) {
+            return;
+        }
+        document_.blocks.emplace_back(Heading{2, "Mind"});
+        List list;
+        for (std::size_t i = 0; i < std::min(job_.warnings.size(), kMostWarnings); ++i) {
+            list.items.push_back(job_.warnings[i]);
+        }
+        if (job_.warnings.size() > kMostWarnings) {
+            list.items.push_back(fmt::format("And {} more: report.json lists all.",
+                                             job_.warnings.size() - kMostWarnings));
+        }
+        document_.blocks.emplace_back(std::move(list));
+    }
+
+    void add_checks() {
+        document_.blocks.emplace_back(Heading{2, "Checked"});
+        List list;
+        if (job_.certificate.edges_compared > 0) {
+            list.items.push_back(fmt::format(
+                "The cut files were read back and the strips rebuilt from them: no edge of the "
+                "{} compared differs from the model by more than {:.3f} mm.",
+                job_.certificate.edges_compared, job_.certificate.largest_deviation_mm));
+        }
+        list.items.push_back(fmt::format(
+            "Every crossing is made in one step and one only: {} crossings in {} moves.",
+            job_.quads.quads.size(), job_.assembly.moves.size()));
+        if (job_.assembly.threaded > 0) {
+            list.items.push_back(fmt::format(
+                "{} need threading, under {} at most.",
+                counted(static_cast<std::size_t>(job_.assembly.threaded), "strip"),
+                counted(static_cast<std::size_t>(job_.assembly.longest_thread), "strip")));
+        } else if (!job_.assembly.moves.empty()) {
+            list.items.push_back("No strip has to be threaded.");
+        }
+        document_.blocks.emplace_back(std::move(list));
+    }
+
+    const JobIndex& index_;
+    const JobResult& job_;
+    Document& document_;
+};
+
+}  // namespace
+
+void add_notes_chapter(const JobIndex& index, Document& document) {
+    NotesChapter(index, document).add();
+}
+
+}  // namespace leafcutter::fab::guide
