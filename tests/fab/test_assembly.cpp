@@ -1,0 +1,342 @@
+#include <numeric>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "fab/weave/assembly.h"
+#include "geometry/foliation.h"
+#include "geometry/surface_measures.h"
+#include "geometry/samples.h"
+#include "tests/geometry/surfaces.h"
+#include "tests/support/cut_strips.h"
+#include "tests/support/quad_grids.h"
+
+namespace leafcutter::fab {
+namespace {
+
+using test::Cutting;
+
+struct Job {
+    test::CutStrips cut;
+    Crossings crossings;
+    Assembly assembly;
+
+    std::optional<AssemblyFault> fault() const {
+        return check_assembly(cut.strips, cut.pieces, crossings, assembly);
+    }
+    const Strip& strip(const AssemblyMove& move) const {
+        return cut.strips[static_cast<std::size_t>(move.strip)];
+    }
+    std::vector<std::string> laid() const {
+        std::vector<std::string> ids;
+        for (const AssemblyMove& move : assembly.moves) {
+            if (move.kind == MoveKind::Lay || move.kind == MoveKind::Thread) {
+                ids.push_back(strip(move).id);
+            }
+        }
+        return ids;
+    }
+};
+
+Job plan(const geometry::QuadMesh& mesh, const Weave& weave, const Cutting& cutting = {}) {
+    Job job;
+    job.cut = test::cut_strips(mesh, cutting);
+    job.crossings = crossings_of(job.cut.strips, weave);
+    job.assembly = plan_assembly(mesh, job.cut.strips, job.cut.pieces, job.crossings);
+    const auto fault = job.fault();
+    EXPECT_FALSE(fault) << "move " << fault->move << ": " << fault->what;
+    return job;
+}
+
+Job plan(const geometry::QuadMesh& mesh,
+         WeavePattern pattern = WeavePattern::Plain,
+         const Cutting& cutting = {}) {
+    WeaveParams params;
+    params.pattern = pattern;
+    return plan(mesh, weave_cells(mesh, params), cutting);
+}
+
+geometry::QuadMesh sample_grid(std::string_view name,
+                               double cells,
+                               geometry::FoliationMode mode = geometry::FoliationMode::Auto,
+                               geometry::Junctions junctions = geometry::Junctions::Conforming) {
+    const geometry::TriangleMesh triangles = geometry::make_sample(name, 2500);
+    geometry::FoliationOptions options;
+    options.mode = mode;
+    const geometry::Foliation foliation =
+        geometry::compute_foliation(testing::to_mesh(triangles), options);
+    geometry::GridOptions grid;
+    grid.strip_width_mm = std::sqrt(geometry::surface_area(triangles) / cells);
+    grid.junctions = junctions;
+    return geometry::build_quad_mesh(foliation, grid);
+}
+
+constexpr std::array kPatterns{WeavePattern::Plain,      WeavePattern::Twill2x2,
+                               WeavePattern::DoubleWarp, WeavePattern::DoubleWeft,
+                               WeavePattern::Satin5,     WeavePattern::Basket2x2};
+
+int golden(int strip, int count) {
+    return static_cast<int>(0.618034 * strip * count) % count;
+}
+
+TEST(PlanAssembly, LaysTheWarpOfASheetThenRowAfterRow) {
+    const Job job = plan(test::flat_grid({3, 4}, 10.0));
+    EXPECT_EQ(job.laid(), (std::vector<std::string>{"P1", "P2", "P3", "P4", "W1", "W2", "W3"}));
+    EXPECT_EQ(job.assembly.laid, 7);
+    EXPECT_EQ(job.assembly.threaded, 0);
+    EXPECT_EQ(job.assembly.moves.size(), 7U);
+    EXPECT_EQ(job.assembly.moves.back().cells, (std::vector<int>{0, 1, 2, 3}));
+}
+
+TEST(PlanAssembly, ClosesEachRingBeforeTheNextOne) {
+    const Job job = plan(test::cylinder_grid({5, 8}, 20.0, 50.0), WeavePattern::Plain,
+                         {.opening = [](int strip) { return 3 * strip; }});
+    ASSERT_EQ(job.assembly.moves.size(), 8U + 2U * 5U);
+    for (std::size_t row = 0; row < 5; ++row) {
+        const AssemblyMove& lay = job.assembly.moves[8 + 2 * row];
+        const AssemblyMove& close = job.assembly.moves[9 + 2 * row];
+        EXPECT_EQ(lay.kind, MoveKind::Lay);
+        EXPECT_EQ(job.strip(lay).id, fmt::format("W{}", row + 1));
+        EXPECT_EQ(lay.cells.front(), static_cast<int>(3 * row % 8));
+        EXPECT_EQ(close.kind, MoveKind::Close);
+        EXPECT_EQ(close.strip, lay.strip);
+        EXPECT_EQ(close.tucked, 0);
+    }
+}
+
+TEST(PlanAssembly, NeedsNoThreadWhereEndsOfATorusLieInOneLine) {
+    for (const WeavePattern pattern : kPatterns) {
+        const Job job = plan(test::torus_grid({20, 20}, 50.0, 15.0), pattern);
+        EXPECT_EQ(job.assembly.threaded, 0);
+        EXPECT_EQ(job.assembly.place_joints, 40);
+    }
+}
+
+TEST(PlanAssembly, ThreadsWhereEndsOfATorusLieApart) {
+    const Job job = plan(test::torus_grid({12, 12}, 50.0, 15.0), WeavePattern::Plain,
+                         {.opening = [](int strip) { return golden(strip, 12); }});
+    EXPECT_GT(job.assembly.threaded, 0);
+    EXPECT_GT(job.assembly.longest_thread, 1);
+}
+
+TEST(PlanAssembly, OpensAClosedStripAtTheJointThatSavesThreading) {
+    // Columns in three pieces, every other one begun elsewhere, but all with one joint in a line.
+    const Cutting cutting{.most_cells = 4, .opening = [](int strip) { return 4 * (strip % 2); }};
+    const Job job = plan(test::torus_grid({12, 12}, 50.0, 15.0), WeavePattern::Plain, cutting);
+    EXPECT_EQ(job.assembly.threaded, 0);
+    EXPECT_EQ(job.assembly.table_joints, 2 * 24);
+    EXPECT_EQ(job.assembly.place_joints, 24);
+}
+
+TEST(PlanAssembly, JoinsPiecesOfAnOpenStripOnTheTable) {
+    const Job job = plan(test::flat_grid({6, 9}, 10.0), WeavePattern::Twill2x2, {.most_cells = 4});
+    EXPECT_EQ(job.assembly.table_joints, 6 * 2 + 9 * 1);
+    EXPECT_EQ(job.assembly.place_joints, 0);
+}
+
+TEST(PlanAssembly, LaysOneLayerOnTheOtherWithoutFolding) {
+    const Job job = plan(test::cylinder_grid({5, 8}, 20.0, 50.0), WeavePattern::DoubleWarp);
+    EXPECT_EQ(job.assembly.regions.front().base, Family::Weft);
+    // A ring that nothing goes under is closed at once.
+    EXPECT_EQ(job.assembly.moves[0].kind, MoveKind::Lay);
+    EXPECT_EQ(job.assembly.moves[1].kind, MoveKind::Close);
+    for (const AssemblyMove& move : job.assembly.moves) {
+        for (const int cell : move.cells) {
+            EXPECT_TRUE(
+                job.crossings[static_cast<std::size_t>(move.strip)][static_cast<std::size_t>(cell)]
+                    .on_top);
+        }
+    }
+    EXPECT_EQ(
+        plan(test::flat_grid({5, 8}, 10.0), WeavePattern::DoubleWeft).assembly.regions.front().base,
+        Family::Warp);
+}
+
+TEST(PlanAssembly, MakesEveryMovePossibleOnSamples) {
+    using geometry::FoliationMode;
+    struct Case {
+        const char* name;
+        FoliationMode mode = FoliationMode::Auto;
+    };
+    for (const Case& shape : {Case{"vase"}, Case{"face"}, Case{"torus"}, Case{"eight"},
+                              Case{"hand"}, Case{"sphere", FoliationMode::SpherePillowcase},
+                              Case{"sphere", FoliationMode::Annulus}}) {
+        const auto mesh = sample_grid(shape.name, 500.0, shape.mode);
+        for (const WeavePattern pattern : kPatterns) {
+            for (const ColumnRuns columns : {ColumnRuns::PerCylinder, ColumnRuns::Through}) {
+                SCOPED_TRACE(shape.name);
+                const Job job = plan(mesh, pattern,
+                                     {.most_cells = 11,
+                                      .opening = [](int strip) { return 7 * strip; },
+                                      .columns = columns});
+                EXPECT_EQ(job.assembly.laid + job.assembly.threaded,
+                          std::count_if(job.assembly.moves.begin(), job.assembly.moves.end(),
+                                        [](const AssemblyMove& m) { return !m.pieces.empty(); }));
+            }
+        }
+    }
+}
+
+TEST(PlanAssembly, NeedsNoThreadCylinderByCylinder) {
+    for (const auto junctions :
+         {geometry::Junctions::Conforming, geometry::Junctions::Independent}) {
+        for (const char* name : {"eight", "hand"}) {
+            const auto mesh = sample_grid(name, 800.0, geometry::FoliationMode::Auto, junctions);
+            for (const WeavePattern pattern : kPatterns) {
+                const Job job = plan(mesh, pattern);
+                EXPECT_EQ(job.assembly.threaded, 0);
+                EXPECT_EQ(job.assembly.regions.size(), mesh.grids.size());
+            }
+        }
+    }
+}
+
+TEST(PlanAssembly, JoinsRegionsLast) {
+    const auto mesh = sample_grid("eight", 500.0);
+    const Job job = plan(mesh);
+    std::size_t strips_joined = 0;
+    int region = 0;
+    for (const AssemblyMove& move : job.assembly.moves) {
+        const bool between =
+            move.kind == MoveKind::Join && !job.strip(move).next.empty() && move.in_place;
+        strips_joined += between ? 1 : 0;
+        EXPECT_TRUE(between || strips_joined == 0);
+        EXPECT_TRUE(between || move.region == region || move.region == region + 1);
+        region = between ? region : move.region;
+    }
+    EXPECT_EQ(strips_joined, static_cast<std::size_t>(std::count_if(
+                                 job.cut.strips.begin(), job.cut.strips.end(),
+                                 [](const Strip& strip) { return !strip.next.empty(); })));
+    EXPECT_GT(strips_joined, 0U);
+}
+
+TEST(PlanAssembly, GrowsOnlyWhereSomethingLies) {
+    for (const char* name : {"eight", "hand"}) {
+        const Job job =
+            plan(sample_grid(name, 500.0), WeavePattern::Plain, {.columns = ColumnRuns::Through});
+        std::vector<char> lies(job.cut.strips.size(), 0);
+        int begun = -1;
+        for (const AssemblyMove& move : job.assembly.moves) {
+            if (move.cells.empty()) {
+                continue;
+            }
+            const auto& crossings = job.crossings[static_cast<std::size_t>(move.strip)];
+            const bool touches = std::any_of(crossings.begin(), crossings.end(), [&](auto& c) {
+                return lies[static_cast<std::size_t>(c.strip)] != 0;
+            });
+            EXPECT_TRUE(touches || move.region != begun);
+            begun = move.region;
+            for (const Crossing& crossing : crossings) {
+                lies[static_cast<std::size_t>(crossing.strip)] = 1;
+            }
+        }
+    }
+}
+
+TEST(PlanAssembly, FindsAWayForAnyMatrixAndAnyJoints) {
+    std::mt19937 random(5);
+    for (int round = 0; round < 60; ++round) {
+        const test::GridSize size{3 + static_cast<int>(random() % 6),
+                                  3 + static_cast<int>(random() % 6)};
+        geometry::QuadMesh mesh = round % 2 == 0 ? test::torus_grid(size, 50.0, 15.0)
+                                                 : test::cylinder_grid(size, 20.0, 50.0);
+        Weave weave;
+        for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
+            weave.warp_on_top.push_back(static_cast<std::uint8_t>(random() % 2));
+        }
+        plan(mesh, weave,
+             {.most_cells = 1 + static_cast<int>(random() % 8),
+              .opening = [&](int) { return static_cast<int>(random() % 100); },
+              .tab_mm = 1.5});
+    }
+}
+
+class CheckAssembly : public ::testing::Test {
+protected:
+    void SetUp() override {
+        job_ = plan(test::torus_grid({6, 8}, 50.0, 15.0), WeavePattern::Plain,
+                    {.most_cells = 5, .opening = [](int strip) { return golden(strip, 6); }});
+    }
+
+    std::vector<AssemblyMove>& moves() { return job_.assembly.moves; }
+
+    std::size_t first(MoveKind kind, std::size_t from = 0) {
+        while (moves()[from].kind != kind ||
+               (kind == MoveKind::Lay && moves()[from].cells.empty())) {
+            ++from;
+        }
+        return from;
+    }
+
+    Job job_;
+};
+
+TEST_F(CheckAssembly, FindsAMoveTooFew) {
+    for (std::size_t i = 0; i < moves().size(); ++i) {
+        Job damaged = job_;
+        damaged.assembly.moves.erase(damaged.assembly.moves.begin() +
+                                     static_cast<std::ptrdiff_t>(i));
+        EXPECT_TRUE(damaged.fault()) << i;
+    }
+}
+
+TEST_F(CheckAssembly, FindsAMoveMadeTwice) {
+    for (std::size_t i = 0; i < moves().size(); ++i) {
+        Job damaged = job_;
+        damaged.assembly.moves.insert(
+            damaged.assembly.moves.begin() + static_cast<std::ptrdiff_t>(i), moves()[i]);
+        const auto fault = damaged.fault();
+        ASSERT_TRUE(fault) << i;
+        EXPECT_EQ(fault->move, static_cast<int>(i) + 1);
+    }
+}
+
+TEST_F(CheckAssembly, FindsWhatCannotBeFoldedBack) {
+    const std::size_t thread = first(MoveKind::Thread);
+    moves()[thread].kind = MoveKind::Lay;
+    moves()[thread].held.clear();
+    ASSERT_TRUE(job_.fault());
+    EXPECT_EQ(job_.fault()->move, static_cast<int>(thread));
+    EXPECT_NE(job_.fault()->what.find("cannot be folded back"), std::string::npos);
+}
+
+TEST_F(CheckAssembly, FindsARingLaidUnderWhatIsClosed) {
+    // All columns closed before the last row comes.
+    Job job = plan(test::torus_grid({6, 8}, 50.0, 15.0));
+    auto& all = job.assembly.moves;
+    const auto last_row = std::find_if(
+        all.rbegin(), all.rend(), [](const AssemblyMove& move) { return !move.cells.empty(); });
+    std::rotate(last_row.base() - 1, last_row.base() + 1, all.end());
+    ASSERT_TRUE(job.fault());
+    EXPECT_NE(job.fault()->what.find("cannot be folded back"), std::string::npos);
+}
+
+TEST_F(CheckAssembly, FindsATabThatCannotBeReached) {
+    const auto tucked = std::find_if(moves().begin(), moves().end(),
+                                     [](const AssemblyMove& move) { return move.tucked > 0; });
+    ASSERT_NE(tucked, moves().end());
+    tucked->tucked = 0;
+    ASSERT_TRUE(job_.fault());
+    EXPECT_NE(job_.fault()->what.find("cannot be reached"), std::string::npos);
+}
+
+TEST_F(CheckAssembly, FindsCrossingsLeftOut) {
+    moves()[first(MoveKind::Lay)].cells.pop_back();
+    EXPECT_TRUE(job_.fault());
+}
+
+TEST_F(CheckAssembly, FindsARingClosedOnTheTable) {
+    const std::size_t close = first(MoveKind::Close);
+    AssemblyMove move = moves()[close];
+    move.in_place = false;
+    std::size_t lay = 0;
+    while (moves()[lay].strip != move.strip) {
+        ++lay;
+    }
+    moves().erase(moves().begin() + static_cast<std::ptrdiff_t>(close));
+    moves().insert(moves().begin() + static_cast<std::ptrdiff_t>(lay), move);
+    EXPECT_TRUE(job_.fault());
+}
+
+}  // namespace
+}  // namespace leafcutter::fab

@@ -1,0 +1,57 @@
+// Strips of a quad mesh parted into pieces by rule, without unfolding: for tests of what only asks
+// where joints are.
+
+#pragma once
+
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "fab/strips/strips.h"
+
+namespace leafcutter::test {
+
+struct Cutting {
+    int most_cells = 1 << 20;  // Of a piece.
+    std::function<int(int strip)> opening = [](int) {
+        return 0;
+    };                    // Cell that closed ones begin at.
+    double tab_mm = 0.5;  // A cell is 1 mm long.
+    fab::ColumnRuns columns = fab::ColumnRuns::PerCylinder;
+};
+
+struct CutStrips {
+    std::vector<fab::Strip> strips;
+    std::vector<fab::Piece> pieces;
+};
+
+inline CutStrips cut_strips(const geometry::QuadMesh& mesh, const Cutting& cutting = {}) {
+    CutStrips result;
+    result.strips = fab::make_strips(mesh, cutting.columns);
+    for (std::size_t i = 0; i < result.strips.size(); ++i) {
+        fab::Strip& strip = result.strips[i];
+        const int count = static_cast<int>(strip.quads.size());
+        const int first = strip.closed ? cutting.opening(static_cast<int>(i)) % count : 0;
+        for (int done = 0; done < count;) {
+            fab::Piece piece;
+            piece.id = fmt::format("{}.{}", strip.id, strip.pieces.size() + 1);
+            piece.strip = strip.id;
+            piece.family = strip.family;
+            piece.first_cell = (first + done) % count;
+            piece.cell_count = std::min(cutting.most_cells, count - done);
+            for (int rung = 0; rung <= piece.cell_count; ++rung) {
+                piece.left.emplace_back(rung, 0.5);
+                piece.right.emplace_back(rung, -0.5);
+            }
+            done += piece.cell_count;
+            const bool joined = done < count || strip.closed || !strip.next.empty();
+            piece.end_tab.length_mm = joined ? cutting.tab_mm : 0.0;
+            strip.pieces.push_back(piece.id);
+            result.pieces.push_back(std::move(piece));
+        }
+    }
+    return result;
+}
+
+}  // namespace leafcutter::test
