@@ -1,230 +1,120 @@
 #include "fab/strips/marks.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <optional>
+#include <charconv>
+#include <iterator>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "fab/strips/labels.h"
-#include "fab/strips/overlap.h"
+#include "fab/strips/piece_marker.h"
 
 namespace leafcutter::fab {
 
 namespace {
 
-using Eigen::Vector2d;
+constexpr std::size_t kMostNamed = 12;  // Strips that a warning names.
 
-constexpr double kFoldScoreDeg = 15.0;  // A cell that bends further is scored on its diagonal.
-constexpr double kTickMm = 1.2;         // Length of a tick, at most kTickPart of the width.
-constexpr double kTickPart = 0.15;
-constexpr double kEdgeMm = 0.3;  // Marks keep away from the edge, at most kEdgePart of it.
-constexpr double kEdgePart = 0.05;
-constexpr double kMarkPitchMm = 1.0;  // Lines across the strip stand no closer.
-constexpr double kLargestTextMm = 4.0;
-constexpr double kSmallestTextMm = 1.0;
-constexpr double kTextPart = 0.5;  // Height of a label in widths of its strip.
-constexpr double kTextPadMm = 0.25;
-constexpr double kArrowGap = 0.5;  // In text heights.
-constexpr double kArrowLength = 1.2;
-
-Mark line(Operation operation, Polyline path) {
-    Mark mark;
-    mark.operation = operation;
-    mark.path = std::move(path);
-    return mark;
+// 12 of "W12".
+int number_of(std::string_view id) {
+    int number = 0;
+    std::from_chars(id.data() + std::min<std::size_t>(1, id.size()), id.data() + id.size(), number);
+    return number;
 }
 
-// The middle line of a piece, by arc length.
-class CentreLine {
+class FactFinder {
 public:
-    explicit CentreLine(const Piece& piece) {
-        for (std::size_t i = 0; i < piece.cut_left.size(); ++i) {
-            points_.emplace_back((piece.cut_left[i] + piece.cut_right[i]) / 2.0);
-            at_.push_back(i == 0 ? 0.0 : at_.back() + (points_[i] - points_[i - 1]).norm());
+    FactFinder(std::span<const Strip> strips, const Crossings& crossings)
+        : strips_(strips), crossings_(crossings) {
+        for (std::size_t i = 0; i < strips.size(); ++i) {
+            index_.emplace(strips[i].id, i);
         }
     }
 
-    double length() const { return at_.back(); }
-    double position(std::size_t rung) const { return at_[rung]; }
-
-    Vector2d point(double s) const {
-        const auto upper = std::upper_bound(at_.begin(), at_.end(), s);
-        const auto i = std::clamp<std::ptrdiff_t>(upper - at_.begin(), 1,
-                                                  static_cast<std::ptrdiff_t>(at_.size()) - 1);
-        const auto k = static_cast<std::size_t>(i);
-        const double step = at_[k] - at_[k - 1];
-        const double part = step > 0.0 ? (s - at_[k - 1]) / step : 0.0;
-        return points_[k - 1] + part * (points_[k] - points_[k - 1]);
+    MarkFacts facts_of(const Piece& piece) const {
+        MarkFacts facts;
+        const std::size_t index = index_.at(piece.strip);
+        const std::vector<Crossing>& crossings = crossings_[index];
+        for (int i = 0; i < piece.cell_count; ++i) {
+            const auto cell = static_cast<std::size_t>(piece.first_cell + i) % crossings.size();
+            const std::string& id = strips_[static_cast<std::size_t>(crossings[cell].strip)].id;
+            facts.crossing.emplace_back(id);
+            facts.numbers.push_back(number_of(id));
+            facts.under.push_back(crossings[cell].on_top ? 0 : 1);
+        }
+        facts.before = piece.start_tab.onto;
+        facts.behind =
+            piece.end_tab.onto.empty() ? follower(strips_[index], piece.id) : piece.end_tab.onto;
+        return facts;
     }
 
 private:
-    Polyline points_;
-    std::vector<double> at_;
+    // The piece that follows `id` in its strip, or else the strip that follows.
+    static std::string follower(const Strip& strip, const std::string& id) {
+        const auto at = std::find(strip.pieces.begin(), strip.pieces.end(), id);
+        if (at != strip.pieces.end() && at + 1 != strip.pieces.end()) {
+            return *(at + 1);
+        }
+        return strip.closed && !strip.pieces.empty() ? strip.pieces.front() : strip.next;
+    }
+
+    std::span<const Strip> strips_;
+    const Crossings& crossings_;
+    std::unordered_map<std::string_view, std::size_t> index_;
 };
 
-struct Marks {
-    std::vector<Mark> marks;
-    bool label_fits = true;
-};
-
-class Marker {
-public:
-    Marker(const Piece& piece, const FitParams& fit)
-        : piece_(piece),
-          fit_(fit),
-          inside_(piece.outline),
-          centre_(piece),
-          cells_(static_cast<std::size_t>(piece.cell_count)) {}
-
-    Marks make() {
-        Marks result;
-        if (fit_.labels) {
-            result.label_fits = add_label();
-        }
-        if (fit_.cell_marks != CellMarks::None) {
-            add_crossings();
-        }
-        if (piece_.end_tab.length_mm > 0.0) {
-            keep(line(Operation::Engrave, across(cells_, Reach::Whole)));
-        }
-        add_folds();
-        result.marks = std::move(marks_);
-        return result;
+std::string listed(const std::vector<std::string>& names) {
+    std::string list;
+    for (std::size_t i = 0; i < std::min(kMostNamed, names.size()); ++i) {
+        fmt::format_to(std::back_inserter(list), "{}{}", i == 0 ? "" : ", ", names[i]);
     }
-
-private:
-    const Polyline& left() const { return piece_.cut_left; }
-    const Polyline& right() const { return piece_.cut_right; }
-
-    void keep(Mark mark) {
-        if (inside_.contains(mark.path)) {
-            marks_.push_back(std::move(mark));
-        }
+    if (names.size() > kMostNamed) {
+        fmt::format_to(std::back_inserter(list), " and {} more", names.size() - kMostNamed);
     }
+    return list;
+}
 
-    // Where a line lies on its rung: over all of it, or a tick at one end.
-    enum class Reach { Whole, LeftTick, RightTick };
-
-    Polyline across(std::size_t i, Reach reach) const {
-        const Vector2d rung = right()[i] - left()[i];
-        const double width = std::max(rung.norm(), 1e-9);
-        const double edge = std::min(kEdgeMm / width, kEdgePart);
-        const double tick = std::min(kTickMm / width, kTickPart);
-        const double from = reach == Reach::RightTick ? 1.0 - edge - tick : edge;
-        const double to = reach == Reach::LeftTick ? edge + tick : 1.0 - edge;
-        return {left()[i] + from * rung, left()[i] + to * rung};
+void tell(const MarksLeftOut& left_out, std::vector<std::string>& warnings) {
+    if (!left_out.unnamed_strips.empty()) {
+        warnings.push_back(fmt::format(
+            "too narrow or too bent for any label, so tell them by the guide's drawings: {}",
+            listed(left_out.unnamed_strips)));
     }
-
-    void add_crossings() {
-        double last = 0.0;
-        for (std::size_t i = 1; i < cells_; ++i) {
-            const double here = centre_.position(i);
-            if (here - last < kMarkPitchMm || centre_.length() - here < kMarkPitchMm) {
-                continue;
-            }
-            last = here;
-            if (fit_.cell_marks == CellMarks::Lines) {
-                keep(line(Operation::Engrave, across(i, Reach::Whole)));
-            } else {
-                keep(line(Operation::Engrave, across(i, Reach::LeftTick)));
-                keep(line(Operation::Engrave, across(i, Reach::RightTick)));
-            }
-        }
+    if (left_out.rungs > 0) {
+        warnings.push_back(fmt::format(
+            "cells too short for tick marks: {} pairs of ticks are left out", left_out.rungs));
     }
-
-    void add_folds() {
-        for (std::size_t i = 0; i < cells_; ++i) {
-            if (piece_.bend[i] == Bend::None || piece_.fold_deg[i] < kFoldScoreDeg) {
-                continue;
-            }
-            const bool rising = piece_.fold_rises[i] != 0;
-            const Vector2d from = rising ? right()[i] : left()[i];
-            const Vector2d to = rising ? left()[i + 1] : right()[i + 1];
-            const Vector2d way = to - from;
-            const double trim = std::min(kEdgeMm * 1.5 / std::max(way.norm(), 1e-9), 0.1);
-            if (way.norm() >= kMarkPitchMm) {
-                keep(line(Operation::Score, {from + trim * way, to - trim * way}));
-            }
-        }
+    if (left_out.weave_marks > 0) {
+        warnings.push_back(
+            fmt::format("cells too small for a weave mark: {} bars are left out, follow the guide "
+                        "there",
+                        left_out.weave_marks));
     }
-
-    double widest() const {
-        double width = 0.0;
-        for (std::size_t i = 0; i < left().size(); ++i) {
-            width = std::max(width, (left()[i] - right()[i]).norm());
-        }
-        return width;
-    }
-
-    bool add_label() {
-        const double largest = std::min(kLargestTextMm, kTextPart * widest());
-        for (double height = largest; height >= kSmallestTextMm; height *= 0.85) {
-            const double width =
-                height * (text_width(piece_.id) + kArrowGap + kArrowLength) + 2.0 * kTextPadMm;
-            const double step = std::max(width / 4.0, (centre_.length() - width) / 200.0);
-            for (double s = width / 2.0; s <= centre_.length() - width / 2.0; s += step) {
-                if (place_label(s, width, height)) {
-                    return true;
-                }
-            }
-        }
-        return false;
-    }
-
-    bool place_label(double s, double width, double height) {
-        const Vector2d from = centre_.point(s - width / 2.0);
-        const Vector2d chord = centre_.point(s + width / 2.0) - from;
-        const Vector2d x = chord.stableNormalized();
-        const Vector2d y(-x.y(), x.x());
-        const Vector2d middle = (from + chord / 2.0 + centre_.point(s)) / 2.0;
-        const Vector2d corner = middle - width / 2.0 * x - (height / 2.0 + kTextPadMm) * y;
-        const double tall = height + 2.0 * kTextPadMm;
-        const Polyline box{corner, corner + width * x, corner + width * x + tall * y,
-                           corner + tall * y, corner};
-        if (!inside_.contains(box)) {
-            return false;
-        }
-        Mark text;
-        text.text = piece_.id;
-        text.at = corner + kTextPadMm * (x + y);
-        text.angle_deg = std::atan2(x.y(), x.x()) * 180.0 / std::numbers::pi;
-        text.height_mm = height;
-        const Vector2d tail =
-            text.at + height * (text_width(piece_.id) + kArrowGap) * x + height / 2.0 * y;
-        const Vector2d tip = tail + height * kArrowLength * x;
-        const Vector2d back = tip - 0.35 * height * x;
-        marks_.push_back(std::move(text));
-        keep(line(Operation::Engrave, {tail, tip}));
-        keep(line(Operation::Engrave, {back + 0.3 * height * y, tip, back - 0.3 * height * y}));
-        return true;
-    }
-
-    const Piece& piece_;
-    const FitParams& fit_;
-    RingInterior inside_;
-    CentreLine centre_;
-    std::size_t cells_;
-    std::vector<Mark> marks_;
-};
+}
 
 }  // namespace
 
-void mark_pieces(std::span<Piece> pieces,
-                 std::span<const Strip> /*strips*/,
-                 const Crossings& /*crossings*/,
-                 const FitParams& fit,
-                 std::vector<std::string>& warnings) {
+MarksLeftOut mark_pieces(std::span<Piece> pieces,
+                         std::span<const Strip> strips,
+                         const Crossings& crossings,
+                         const FitParams& fit,
+                         std::vector<std::string>& warnings) {
+    const FactFinder finder(strips, crossings);
+    MarksLeftOut left_out;
     for (Piece& piece : pieces) {
-        Marks marks = Marker(piece, fit).make();
-        piece.marks = std::move(marks.marks);
-        if (!marks.label_fits) {
-            warnings.push_back(
-                fmt::format("{}: too narrow for its label, which is left out", piece.strip));
+        PieceMarks made = marks_of(piece, finder.facts_of(piece), fit);
+        std::move(made.marks.begin(), made.marks.end(), std::back_inserter(piece.marks));
+        left_out.rungs += made.bare_rungs;
+        left_out.weave_marks += made.bare_weave_cells;
+        std::vector<std::string>& unnamed = left_out.unnamed_strips;
+        if (!made.is_named && (unnamed.empty() || unnamed.back() != piece.strip)) {
+            unnamed.push_back(piece.strip);
         }
     }
+    tell(left_out, warnings);
+    return left_out;
 }
 
 }  // namespace leafcutter::fab
