@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/grbl/session.h"
+#include "drivers/lihuiyu/address.h"
 #include "drivers/marlin/session.h"
 #include "drivers/session_device.h"
 #include "drivers/sim/sim_transport.h"
@@ -85,10 +86,13 @@ std::unique_ptr<Device> open_device(std::string_view uri) {
     if (starts_with(uri, kSmoothie)) {
         return attached(uri, open_transport(uri.substr(kSmoothie.size())), smoothie_session);
     }
+    if (starts_with(uri, "lihuiyu:") || uri == "sim:lihuiyu" || starts_with(uri, "sim:lihuiyu?")) {
+        return open_lihuiyu(uri);
+    }
     throw std::invalid_argument(
         "device \"" + std::string(uri) +
         "\": must be grbl:/dev/PORT?baud=N, grbl:tcp://host:port, marlin:…, "
-        "smoothie:… alike, or sim:grbl");
+        "smoothie:… alike, lihuiyu:usb?bus=N&address=N, sim:grbl or sim:lihuiyu");
 }
 
 }  // namespace leafcutter::drivers

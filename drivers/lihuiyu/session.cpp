@@ -114,7 +114,6 @@ void LihuiyuSession::home() {
     homed_ = false;
     homing_ = moving_by_hand_ = true;
     homing_since_.reset();
-    was_busy_ = false;
     // What some host left half done would take the next bytes for its own: forget it first.
     queue(make_payload("I"), Purpose::Home);
     queue(make_payload("IPP"), Purpose::Home);

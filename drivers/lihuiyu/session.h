@@ -136,7 +136,7 @@ private:
     bool moving_by_hand_ = false;  // Homing or jogging.
     bool homing_ = false;
     std::optional<Time> homing_since_;  // When the board took the command.
-    bool was_busy_ = false;             // Since then.
+    bool was_busy_ = false;             // Since the last packet.
     bool homed_ = false;
     StepPlace place_;
 

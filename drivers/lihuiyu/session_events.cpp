@@ -131,6 +131,7 @@ void LihuiyuSession::send_next() {
     if (in_flight_) {
         resends_ = 0;
         doubtful_ = false;
+        was_busy_ = false;
         write(*in_flight_);
     }
 }
@@ -193,7 +194,6 @@ void LihuiyuSession::confirm() {
             break;
         case Purpose::Home:
             homing_since_ = now_;
-            was_busy_ = false;
             break;
         case Purpose::Stop:
         case Purpose::Rails:
