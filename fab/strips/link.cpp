@@ -83,7 +83,20 @@ public:
     }
 
 private:
+    // The piece that an end laid straight on is glued to.
+    std::string glued_to(const GluedEnd& end) const {
+        const auto onto = strips_.find(end.onto);
+        if (onto == strips_.end()) {
+            return {};
+        }
+        const std::vector<std::string>& pieces = onto->second->pieces;
+        return end.onto_start ? pieces.front() : pieces.back();
+    }
+
     std::string behind(const Strip& strip) const {
+        if (strip.glued_end.has_tab) {
+            return glued_to(strip.glued_end);
+        }
         if (strip.closed) {
             return strip.pieces.front();
         }
@@ -93,6 +106,9 @@ private:
     }
 
     std::string ahead(const Strip& strip) const {
+        if (strip.glued_start.has_tab) {
+            return glued_to(strip.glued_start);
+        }
         if (strip.closed) {
             return strip.pieces.back();
         }

@@ -191,12 +191,12 @@ private:
         const int before = strip_.closed ? half : first;
         Room room;
         if (tabs.end > 0.0) {
-            room.straight_end = at_end(first, count) && strip_.glued_end && beyond_ == 0;
+            room.straight_end = at_end(first, count) && strip_.glued_end.has_tab && beyond_ == 0;
             room.behind = room.straight_end ? 0 : cells_under(tabs.end, first + count, behind, 1);
         }
         if (tabs.start > 0.0) {
             room.straight_start =
-                !strip_.closed && first == 0 && (strip_.glued_start || strip_.follows);
+                !strip_.closed && first == 0 && (strip_.glued_start.has_tab || strip_.follows);
             room.before = room.straight_start ? 0 : cells_under(tabs.start, first - 1, before, -1);
         }
         return room;
@@ -212,10 +212,10 @@ private:
         if (options_.joint == Joint::Cell && (!last || beyond_ > 0)) {
             tabs.end = step(first + count) + 1e-6;
         }
-        if (last && beyond_ == 0 && !strip_.glued_end) {
+        if (last && beyond_ == 0 && !strip_.glued_end.has_tab) {
             tabs.end = 0.0;
         }
-        if (!strip_.closed && first == 0 && strip_.glued_start) {
+        if (!strip_.closed && first == 0 && strip_.glued_start.has_tab) {
             tabs.start = options_.tab_mm;
         }
         return tabs;
@@ -307,7 +307,7 @@ private:
             return piece;
         }
         const bool joined_start =
-            strip_.closed || first > 0 || strip_.follows || strip_.glued_start;
+            strip_.closed || first > 0 || strip_.follows || strip_.glued_start.has_tab;
         const bool joined_end = piece.fitted.end_tab_mm > 0.0;
         const double share = joined_start && joined_end ? lacking / 2.0 : lacking;
         tabs.start += joined_start ? share : 0.0;

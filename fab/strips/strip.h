@@ -18,6 +18,13 @@ using Ring =
     std::vector<Eigen::Vector2d>;  // Simple, counter-clockwise, closing point not repeated.
 using Polyline = std::vector<Eigen::Vector2d>;
 
+// An end that meets another cylinder without sharing vertices with it.
+struct GluedEnd {
+    bool has_tab = false;     // The tab is on this side of the joint.
+    std::string onto;         // The strip that it lies on; empty: on several.
+    bool onto_start = false;  // On its first piece, else on its last.
+};
+
 struct Strip {
     std::string id;  // "W12" for weft, "P7" for warp; numbered from 1 in each family.
     Family family = Family::Weft;
@@ -26,9 +33,9 @@ struct Strip {
     std::vector<int> quads;   // In walking order.
     std::string next;         // The strip that its end is joined to, across a critical leaf,
     std::vector<int> beyond;  // and quads there, going on, for the tab to lie on.
-    bool follows = false;       // Another strip's `next` is this one.
-    bool glued_start = false;   // This end lies on a cylinder that it is glued to without sharing
-    bool glued_end = false;     // vertices, and the tabs are on this side of the joint.
+    bool follows = false;     // Another strip's `next` is this one.
+    GluedEnd glued_start;
+    GluedEnd glued_end;
     std::vector<std::string> pieces;  // Ids, in walking order.
 };
 
