@@ -17,6 +17,7 @@
 #include "fab/nest/family_nest.h"
 #include "fab/package/model_files.h"
 #include "fab/package/package_files.h"
+#include "fab/strips/junctions.h"
 #include "fab/strips/link.h"
 #include "fab/strips/marks.h"
 #include "fab/strips/strips.h"
@@ -300,6 +301,9 @@ private:
         result_.strips =
             make_strips(result_.quads, fit.columns, through_limits(fit, limits.back()));
         refuse_hopeless_strips(result_.strips, result_.quads, limits);
+        if (result_.params.grid.junctions == geometry::Junctions::Independent) {
+            glue_ends(result_.quads, result_.foliation, result_.strips);
+        }
         result_.weave = weave_cells(result_.quads, result_.params.weave);
         result_.crossings = crossings_of(result_.strips, result_.weave);
         JointMap joints(result_.quads);
