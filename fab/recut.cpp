@@ -132,6 +132,7 @@ RecutSummary recut(const RecutInput& input, const geometry::Context& context) {
     RecutSummary summary;
     summary.package = files_of(job);
     summary.sheets = static_cast<int>(job.layout.sheets.size());
+    summary.pieces = static_cast<int>(job.pieces.size());
     for (const CutProgram& program : job.programs) {
         summary.estimated_s += program.estimated_s;
     }

@@ -25,6 +25,7 @@ struct RecutInput {
 struct RecutSummary {
     Package package;  // sheets/, layout.json, report.json, bill.csv, recut.html; no strips.json.
     int sheets = 0;
+    int pieces = 0;
     double estimated_s = 0.0;
 };
 

@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
     add_audit_command(app, common);
     add_nest_command(app, common);
     add_materials_command(app, common);
+    add_recut_command(app, common);
 
     try {
         app.parse(argc, argv);
