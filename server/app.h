@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/config.h"
 #include "server/http/edge.h"
@@ -18,6 +19,14 @@
 
 namespace leafcutter::server {
 
+// Pieces of a finished job that are wanted again.
+struct RecutCall {
+    std::string job_name;
+    std::string wishes_json;
+    std::vector<std::string> material_records;
+    std::function<std::string(const std::string& path)> read;  // A file of the job's package.
+};
+
 // What the daemon is given instead of choosing it, so that tests need neither geometry nor
 // machines.
 struct AppParts {
@@ -26,6 +35,9 @@ struct AppParts {
 
     // Throws geometry::Error for job parameters that can't be.
     std::function<void(const std::string& params_json)> check_params;
+
+    // Within seconds. Throws geometry::Error.
+    std::function<ComputeOutput(const RecutCall&)> recut;
 };
 
 class App {

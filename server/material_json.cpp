@@ -233,6 +233,14 @@ std::vector<fab::Material> materials_from_text(std::string_view text,
     return added;
 }
 
+std::vector<fab::Material> materials_from_records(const std::vector<std::string>& records) {
+    std::vector<fab::Material> materials;
+    for (const std::string& record : records) {
+        materials.push_back(material_from_json(parse_params_text(record, "material"), "", {}));
+    }
+    return materials;
+}
+
 std::vector<fab::Material> with_materials(std::span<const fab::Material> base,
                                           std::span<const fab::Material> added) {
     std::vector<fab::Material> all(base.begin(), base.end());

@@ -26,6 +26,9 @@ fab::Material material_from_json(const nlohmann::json& record,
 std::vector<fab::Material> materials_from_text(std::string_view text,
                                                std::span<const fab::Material> known);
 
+// As material_to_json wrote them, one by one.
+std::vector<fab::Material> materials_from_records(const std::vector<std::string>& records);
+
 // `base` with `added` in the places of those of the same id, the others behind it.
 std::vector<fab::Material> with_materials(std::span<const fab::Material> base,
                                           std::span<const fab::Material> added);

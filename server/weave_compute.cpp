@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fab/pipeline.h"
+#include "server/material_json.h"
 #include "server/params.h"
 
 namespace leafcutter::server {
@@ -22,7 +23,8 @@ std::string summary_json(const fab::PackageSummary& summary) {
     return text.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-// The package's own report lists its sheets: one program each, numbered across materials.
+}  // namespace
+
 std::vector<SheetPlan> sheets_in(const fab::Package& package) {
     std::vector<SheetPlan> sheets;
     const fab::PackageFile* report = package.find("report.json");
@@ -41,12 +43,12 @@ std::vector<SheetPlan> sheets_in(const fab::Package& package) {
     return sheets;
 }
 
-}  // namespace
-
 ComputeOutput weave_job(const ComputeInput& input, const geometry::Context& context) {
     const fab::JobParams params = params_from_json(parse_params_text(input.params_json));
+    const std::vector<fab::Material> materials =
+        with_materials(fab::built_in_materials(), materials_from_records(input.material_records));
     fab::PipelineOptions options;
-    options.materials = fab::built_in_materials();
+    options.materials = materials;
     options.params_json = params_to_json(params).dump();
     fab::PackageSummary summary =
         fab::weave({input.file_name, input.bytes}, params, options, context);

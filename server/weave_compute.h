@@ -4,10 +4,14 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "server/queue/compute_runner.h"
 
 namespace leafcutter::server {
+
+// The sheets that the package's own report lists: one program each, numbered across materials.
+std::vector<SheetPlan> sheets_in(const fab::Package& package);
 
 // See Compute. Throws geometry::Error, geometry::Cancelled.
 ComputeOutput weave_job(const ComputeInput& input, const geometry::Context& context);

@@ -15,6 +15,7 @@
 #include "server/app.h"
 #include "server/cli/command.h"
 #include "server/cli/interrupt.h"
+#include "server/recut_compute.h"
 #include "server/weave_compute.h"
 
 namespace leafcutter::server {
@@ -62,6 +63,7 @@ void serve(const ServeOptions& options) {
     parts.compute = weave_job;
     parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
     parts.check_params = check_job_params;
+    parts.recut = recut_job_pieces;
     App app(config, std::move(parts));
     const bool v6 = config.listen.address.find(':') != std::string::npos;
     const std::string address = v6 ? "[" + config.listen.address + "]" : config.listen.address;

@@ -59,6 +59,24 @@ double seconds_since_start() {
 
 }  // namespace
 
+ComputedJob stored_result(const Blobs& blobs, const ComputeOutput& output) {
+    ComputedJob result;
+    result.summary_json = output.summary_json;
+    for (const fab::PackageFile& file : output.package.files) {
+        const BlobId blob = blobs.put(file.bytes);
+        result.artifacts.push_back({file.path, blob.bytes, blob.sha256, media_type_of(file.path)});
+    }
+    for (const SheetPlan& plan : output.sheets) {
+        const auto program = std::find_if(
+            result.artifacts.begin(), result.artifacts.end(), [&plan](const auto& file) {
+                return !plan.program_path.empty() && file.path == plan.program_path;
+            });
+        const std::string sha256 = program == result.artifacts.end() ? "" : program->sha256;
+        result.sheets.push_back({plan.number, plan.material, sha256, plan.estimated_s, false});
+    }
+    return result;
+}
+
 JobFailure failure_of(const std::exception& error) {
     if (const auto* refused = dynamic_cast<const geometry::Error*>(&error)) {
         return {std::string(name_of(refused->kind())), refused->code(), refused->what()};
@@ -169,7 +187,9 @@ void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
     };
     try {
         const std::unique_ptr<MappedBlob> mesh = store_.blobs.map(job.file.sha256);
-        finish(job, compute_({job.file.name, mesh->bytes(), job.params_json, job.name}, context));
+        finish(job, compute_({job.file.name, mesh->bytes(), job.params_json, job.name,
+                              store_.materials.records()},
+                             context));
     } catch (const geometry::Cancelled&) {
         const bool requeued = stop.stop_requested() && store_.jobs.requeue(job.id);
         spdlog::info("job {}: {}", job.id, requeued ? "back in the queue" : "cancelled");
@@ -182,21 +202,7 @@ void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
 }
 
 void ComputeRunner::finish(const JobRecord& job, const ComputeOutput& output) {
-    ComputedJob result;
-    result.summary_json = output.summary_json;
-    for (const fab::PackageFile& file : output.package.files) {
-        const BlobId blob = store_.blobs.put(file.bytes);
-        result.artifacts.push_back({file.path, blob.bytes, blob.sha256, media_type_of(file.path)});
-    }
-    for (const SheetPlan& plan : output.sheets) {
-        const auto program = std::find_if(
-            result.artifacts.begin(), result.artifacts.end(), [&plan](const auto& file) {
-                return !plan.program_path.empty() && file.path == plan.program_path;
-            });
-        const std::string sha256 = program == result.artifacts.end() ? "" : program->sha256;
-        result.sheets.push_back({plan.number, plan.material, sha256, plan.estimated_s, false});
-    }
-    const bool kept = store_.jobs.finish(job.id, result);
+    const bool kept = store_.jobs.finish(job.id, stored_result(store_.blobs, output));
     spdlog::info("job {}: {}", job.id, kept ? "ready" : "cancelled at the last moment");
 }
 

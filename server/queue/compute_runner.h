@@ -26,6 +26,7 @@ struct ComputeInput {
     std::span<const std::byte> bytes;
     std::string params_json;
     std::string job_name;
+    std::vector<std::string> material_records;  // JSON, beside the built-in materials.
 };
 
 struct SheetPlan {
@@ -101,6 +102,9 @@ private:
 
     std::vector<std::jthread> workers_;  // Last: they use everything above.
 };
+
+// Puts the files of `output` into the blobs. Throws BlobWriteFailed.
+ComputedJob stored_result(const Blobs& blobs, const ComputeOutput& output);
 
 // What a failed computation says of itself: a stable kind, a code, and words.
 JobFailure failure_of(const std::exception& error);

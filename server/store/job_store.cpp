@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kColumns =
     "ordinal, id, name, state, version, created_ms, updated_ms, file_name, file_bytes, "
     "file_sha256, "
-    "params, attempt, error_kind, error_code, error_detail, summary";
+    "params, attempt, error_kind, error_code, error_detail, summary, recut_of";
 
 JobRecord job_from(SQLite::Statement& row) {
     JobRecord job;
@@ -36,6 +36,7 @@ JobRecord job_from(SQLite::Statement& row) {
     if (!row.getColumn(15).isNull()) {
         job.summary_json = row.getColumn(15).getString();
     }
+    job.recut_of = row.getColumn(16).getString();
     return job;
 }
 
@@ -104,12 +105,12 @@ void remember_key(SQLite::Database& database, const IdempotencyKey& key, const s
     insert.exec();
 }
 
-std::string insert_job(SQLite::Database& database, const NewJob& job) {
+std::string insert_job(SQLite::Database& database, const NewJob& job, JobState state) {
     std::string id = new_id("j_");
     SQLite::Statement insert(
         database,
-        "INSERT INTO job(id, name, state, created_ms, updated_ms, file_name, "
-        "file_bytes, file_sha256, params) VALUES(?, ?, 'queued', ?, ?, ?, ?, ?, ?)");
+        "INSERT INTO job(id, name, created_ms, updated_ms, file_name, "
+        "file_bytes, file_sha256, params, state) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
     const std::int64_t now = wall_clock_ms();
     insert.bind(1, id);
     insert.bind(2, job.name);
@@ -119,8 +120,9 @@ std::string insert_job(SQLite::Database& database, const NewJob& job) {
     insert.bind(6, job.file.bytes);
     insert.bind(7, job.file.sha256);
     insert.bind(8, job.params_json);
+    insert.bind(9, std::string(to_string(state)));
     insert.exec();
-    tell(database, id, "queued");
+    tell(database, id, std::string(to_string(state)));
     return id;
 }
 
@@ -210,11 +212,27 @@ AddedJob JobStore::add(const NewJob& job, const std::optional<IdempotencyKey>& k
                 return;
             }
         }
-        const std::string id = insert_job(database, job);
+        const std::string id = insert_job(database, job, JobState::Queued);
         if (key) {
             remember_key(database, *key, id);
         }
         added = {find_job(database, id).value(), false};
+    });
+    return added;
+}
+
+JobRecord JobStore::add_ready(const NewJob& job,
+                              const std::string& recut_of,
+                              const ComputedJob& result) {
+    JobRecord added;
+    database_.write([&](SQLite::Database& database) {
+        const std::string id = insert_job(database, job, JobState::Ready);
+        SQLite::Statement update(database, "UPDATE job SET recut_of = ? WHERE id = ?");
+        update.bind(1, recut_of);
+        update.bind(2, id);
+        update.exec();
+        store_result(database, id, result);
+        added = find_job(database, id).value();
     });
     return added;
 }

@@ -67,6 +67,9 @@ public:
     // Throws KeyReused.
     AddedJob add(const NewJob& job, const std::optional<IdempotencyKey>& key);
 
+    // A job that never waits: pieces of `recut_of` again, computed already.
+    JobRecord add_ready(const NewJob& job, const std::string& recut_of, const ComputedJob& result);
+
     std::optional<JobRecord> find(const std::string& id) const;
 
     // Newest first.

@@ -56,6 +56,7 @@ struct JobRecord {
     std::optional<std::string> summary_json;
     std::vector<SheetRecord> sheets;
     std::vector<std::string> cuts;
+    std::string recut_of;  // The job whose pieces it cuts again; empty: none.
 };
 
 struct CutRecord {

@@ -11,7 +11,8 @@ namespace leafcutter::server {
 namespace {
 
 // Migration N leads to user_version N + 1. Never edit one that was released: add another.
-constexpr std::array kMigrations{R"sql(
+constexpr std::array kMigrations{
+    R"sql(
 CREATE TABLE job(
     ordinal INTEGER PRIMARY KEY AUTOINCREMENT,
     id TEXT NOT NULL UNIQUE,
@@ -99,6 +100,14 @@ CREATE TABLE idempotency(
     at_ms INTEGER NOT NULL) WITHOUT ROWID;
 
 INSERT INTO device VALUES('sim', 'Simulated laser', 'sim:grbl', 0, 600, 400);
+)sql",
+    R"sql(
+CREATE TABLE material(
+    id TEXT PRIMARY KEY,
+    record TEXT NOT NULL) WITHOUT ROWID;
+
+-- The job whose pieces it cuts again.
+ALTER TABLE job ADD COLUMN recut_of TEXT NOT NULL DEFAULT '';
 )sql"};
 
 // Durability first: FULL syncs every commit, and only the writer's own checkpoints touch the file.

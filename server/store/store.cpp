@@ -11,6 +11,7 @@ Store::Store(const std::filesystem::path& path, std::function<void()> after_comm
       jobs(database),
       cuts(database),
       devices(database),
+      materials(database),
       events(database) {
     jobs.recover();
     interrupted_devices = cuts.recover();

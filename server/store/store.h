@@ -12,6 +12,7 @@
 #include "server/store/device_store.h"
 #include "server/store/event_log.h"
 #include "server/store/job_store.h"
+#include "server/store/material_store.h"
 #include "server/store/state_dir.h"
 
 namespace leafcutter::server {
@@ -27,6 +28,7 @@ struct Store {
     JobStore jobs;
     CutStore cuts;
     DeviceStore devices;
+    MaterialStore materials;
     EventLog events;
     std::vector<std::string> interrupted_devices;  // Whose cut a dead daemon left in mid-beam.
 };

@@ -17,6 +17,9 @@ Response delete_job(App& app, Request& request);
 Response recompute_job(App& app, Request& request);
 Response put_blob(App& app, Request& request);
 
+// recut.cpp
+Response recut_job(App& app, Request& request);
+
 // artifacts.cpp
 Response list_artifacts(App& app, Request& request);
 Response show_artifact(App& app, Request& request);
@@ -43,6 +46,8 @@ Response list_ports(App& app, Request& request);
 // materials.cpp
 Response list_materials(App& app, Request& request);
 Response show_material(App& app, Request& request);
+Response put_material(App& app, Request& request);
+Response delete_material(App& app, Request& request);
 
 // events.cpp
 Response stream_events(App& app, Request& request);

@@ -1,30 +1,93 @@
-// The built-in materials.
+// Materials: the built-in ones and those that were added or changed here.
 
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "fab/material/material.h"
+#include "server/app.h"
 #include "server/http/api/handlers.h"
 #include "server/http/api/lookup.h"
-#include "server/http/api/views.h"
+#include "server/http/json_body.h"
 #include "server/http/problem.h"
+#include "server/material_json.h"
 
 namespace leafcutter::server {
 
-Response list_materials(App&, Request&) {
-    nlohmann::json materials = nlohmann::json::array();
-    for (const fab::Material& material : fab::built_in_materials()) {
-        materials.push_back(material_json(material));
-    }
-    return json_response({{"materials", materials}});
+namespace {
+
+using nlohmann::json;
+
+struct Shelf {
+    std::vector<fab::Material> stored;
+    std::vector<fab::Material> all;
+};
+
+Shelf shelf_of(App& app) {
+    Shelf shelf;
+    shelf.stored = materials_from_records(app.store().materials.records());
+    shelf.all = with_materials(fab::built_in_materials(), shelf.stored);
+    return shelf;
 }
 
-Response show_material(App&, Request& request) {
-    const fab::Material* material =
-        fab::find_material(fab::built_in_materials(), request.capture("id"));
+// "built-in", "changed" (a built-in one was) or "own".
+json view_of(const Shelf& shelf, const fab::Material& material) {
+    const bool built_in = fab::find_material(fab::built_in_materials(), material.id) != nullptr;
+    const bool stored = fab::find_material(shelf.stored, material.id) != nullptr;
+    json view = material_to_json(material);
+    view["origin"] = stored ? (built_in ? "changed" : "own") : "built-in";
+    return view;
+}
+
+json view_of(const Shelf& shelf, const std::string& id) {
+    const fab::Material* material = fab::find_material(shelf.all, id);
     if (material == nullptr) {
         throw HttpProblem(404, "no-such-material", "there is no material of that id");
     }
-    return json_response(material_json(*material));
+    return view_of(shelf, *material);
+}
+
+}  // namespace
+
+Response list_materials(App& app, Request&) {
+    const Shelf shelf = shelf_of(app);
+    json materials = json::array();
+    for (const fab::Material& material : shelf.all) {
+        materials.push_back(view_of(shelf, material));
+    }
+    return json_response({{"materials", std::move(materials)}});
+}
+
+Response show_material(App& app, Request& request) {
+    return json_response(view_of(shelf_of(app), request.capture("id")));
+}
+
+Response put_material(App& app, Request& request) {
+    const std::string& id = request.capture("id");
+    json body = read_json_object(request);
+    body.erase("origin");  // As shown; what it is follows.
+    const auto named = body.emplace("id", id);
+    if (!named.second && *named.first != id) {
+        throw HttpProblem(422, "bad-field", "id: must be the one of the address, or be left out");
+    }
+    const fab::Material material = material_from_json(body, "", shelf_of(app).all);
+    const bool is_new = app.store().materials.put(id, dump_json(material_to_json(material)));
+    const bool built_in = fab::find_material(fab::built_in_materials(), id) != nullptr;
+    return json_response(view_of(shelf_of(app), id), is_new && !built_in ? 201 : 200);
+}
+
+Response delete_material(App& app, Request& request) {
+    const std::string& id = request.capture("id");
+    if (!app.store().materials.remove(id)) {
+        const bool built_in = fab::find_material(fab::built_in_materials(), id) != nullptr;
+        throw built_in ? HttpProblem(409, "built-in", "a built-in material stays; change it by PUT")
+                       : HttpProblem(404, "no-such-material", "there is no material of that id");
+    }
+    Response gone;
+    gone.status = 204;
+    return gone;
 }
 
 }  // namespace leafcutter::server

@@ -26,6 +26,7 @@ std::vector<std::string> job_actions(App& app, const JobRecord& job) {
     std::vector<std::string> actions;
     if (job.state == JobState::Ready || job.state == JobState::Done) {
         actions.emplace_back("cut");
+        actions.emplace_back("recut");
     }
     actions.emplace_back("recompute");
     const bool in_use =
@@ -100,12 +101,6 @@ std::vector<std::string> device_actions(const DeviceRunner& runner) {
     return actions;
 }
 
-json laser_json(const fab::LaserSettings& laser) {
-    return {{"power_percent", laser.power_percent},
-            {"feed_mm_per_min", laser.feed_mm_per_min},
-            {"passes", laser.passes}};
-}
-
 // The state that the event led to may be past already: clients get what is true now.
 void add_subject(App& app, const EventRecord& event, json& data) {
     if (event.type == "job") {
@@ -151,6 +146,7 @@ json job_json(App& app, const JobRecord& job) {
         {"summary", job.summary_json ? stored_json(*job.summary_json) : json()},
         {"sheets", sheets},
         {"cuts", job.cuts},
+        {"recut_of", job.recut_of.empty() ? json() : json(job.recut_of)},
         {"actions", job_actions(app, job)}};
 }
 
@@ -199,24 +195,6 @@ json device_json(const DeviceRunner& runner) {
             {"cut", cut ? json(*cut) : json()},
             {"console", runner.console_lines()},
             {"actions", device_actions(runner)}};
-}
-
-json material_json(const fab::Material& material) {
-    json sheets = json::array();
-    for (const fab::StockSheet& sheet : material.sheets) {
-        sheets.push_back({{"width_mm", sheet.size.width_mm}, {"height_mm", sheet.size.height_mm}});
-    }
-    return {{"id", material.id},
-            {"name", material.name},
-            {"colour", material.colour},
-            {"thickness_mm", material.thickness_mm},
-            {"weight_g_per_m2", material.weight_g_per_m2},
-            {"kerf_mm", material.kerf_mm},
-            {"min_strip_width_mm", material.min_strip_width_mm},
-            {"sheets", sheets},
-            {"cut", laser_json(material.cut)},
-            {"score", laser_json(material.score)},
-            {"engrave", laser_json(material.engrave)}};
 }
 
 std::vector<StoredEvent> stored_events(App& app, std::int64_t after, int limit) {

@@ -10,7 +10,6 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "fab/material/material.h"
 #include "server/http/event_hub.h"
 #include "server/queue/device_runner.h"
 #include "server/store/records.h"
@@ -22,7 +21,6 @@ class App;
 nlohmann::json job_json(App& app, const JobRecord& job);
 nlohmann::json cut_json(App& app, const CutRecord& cut);
 nlohmann::json device_json(const DeviceRunner& runner);
-nlohmann::json material_json(const fab::Material& material);
 
 // Whether `action` ("start", "confirm-sheet", …) is among the cut's actions now.
 bool cut_allows(App& app, const CutRecord& cut, const std::string& action);

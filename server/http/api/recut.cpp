@@ -1,0 +1,84 @@
+// Single pieces of a finished job again: a new job, ready at once.
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "server/app.h"
+#include "server/http/api/handlers.h"
+#include "server/http/api/lookup.h"
+#include "server/http/api/views.h"
+#include "server/http/json_body.h"
+#include "server/http/problem.h"
+
+namespace leafcutter::server {
+
+namespace {
+
+using nlohmann::json;
+
+// "eight.off: W12.1, W13 …"
+std::string name_of(const JobRecord& job, const json& body) {
+    constexpr std::size_t kLongest = 200;
+    constexpr std::size_t kMostNamed = 3;
+    std::string name;
+    if (const auto given = body.find("name"); given != body.end()) {
+        if (!given->is_string()) {
+            throw HttpProblem(422, "bad-field", "name: must be a string");
+        }
+        name = given->get<std::string>();
+    }
+    const auto pieces = body.find("pieces");
+    if (name.empty() && pieces != body.end() && pieces->is_array()) {
+        name = job.name + ":";
+        for (std::size_t i = 0; i < std::min(kMostNamed, pieces->size()); ++i) {
+            const json& piece = (*pieces)[i];
+            name += " " + (piece.is_string() ? piece.get<std::string>() : std::string("?"));
+        }
+        name += pieces->size() > kMostNamed ? " …" : "";
+    }
+    name.resize(std::min(name.size(), kLongest));
+    return name;
+}
+
+std::string artifact_text(App& app, const std::string& job, const std::string& path) {
+    const auto artifact = app.store().jobs.artifact(job, path);
+    if (!artifact) {
+        throw HttpProblem(409, "no-package", fmt::format("the job has no {}", path));
+    }
+    return app.store().blobs.read(artifact->sha256);
+}
+
+}  // namespace
+
+Response recut_job(App& app, Request& request) {
+    const JobRecord job = find_job(app, request);
+    if (job.state != JobState::Ready && job.state != JobState::Done) {
+        throw HttpProblem(409, "not-ready", fmt::format("the job is {}", to_string(job.state)));
+    }
+    const json body = read_json_object(request);
+    RecutCall call;
+    call.job_name = job.name;
+    call.wishes_json = dump_json(body);
+    call.material_records = app.store().materials.records();
+    call.read = [&app, &job](const std::string& path) { return artifact_text(app, job.id, path); };
+    const ComputeOutput output = app.parts().recut(call);
+    std::int64_t bytes = 0;
+    for (const fab::PackageFile& file : output.package.files) {
+        bytes += static_cast<std::int64_t>(file.bytes.size());
+    }
+    if (!app.store().blobs.has_room_for(bytes)) {
+        throw HttpProblem(507, "disk", "there is no room for these files");
+    }
+    const NewJob fresh{name_of(job, body), job.file, job.params_json};
+    const JobRecord made =
+        app.store().jobs.add_ready(fresh, job.id, stored_result(app.store().blobs, output));
+    Response response = json_response(job_json(app, made), 201);
+    response.headers["Location"] = "/api/v1/jobs/" + made.id;
+    return response;
+}
+
+}  // namespace leafcutter::server
