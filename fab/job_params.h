@@ -63,6 +63,7 @@ enum class WeavePattern { Plain, Twill2x2, DoubleWarp, DoubleWeft, Satin5, Baske
 struct WeaveParams {
     WeavePattern pattern = WeavePattern::Plain;
     std::vector<std::vector<int>> matrix;  // Matrix only: rows of 0 and 1, 1 = warp on top.
+    std::optional<int> max_float;          // Cells; see float_limit (floats.h).
 };
 
 enum class ColumnRuns { PerCylinder, Through };

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "fab/assembly_stage.h"
 #include "fab/cut/certificate.h"
 #include "fab/cut/toolpath.h"
 #include "fab/even_cells.h"
@@ -324,6 +325,7 @@ private:
                 fmt::format("the pattern breaks between {} pairs of neighbouring cells",
                             result_.weave.seams.size()));
         }
+        add_assembly(result_, warnings_);
         add_thickness(result_, warnings_, context);
     }
 
@@ -355,7 +357,7 @@ private:
             context.check();
             gcode.push_back(write_gcode(program, options_.machine, result_.params.output.dialect));
         }
-        result_.certificate = certify(result_, gcode);
+        result_.certificate = certify(result_, gcode, context);
         result_.warnings = joined_warnings(warnings_);
         files.push_back({"surface.ply", surface_ply(result_)});
         files.push_back({"quads.obj", quads_obj(result_)});

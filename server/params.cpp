@@ -105,6 +105,9 @@ void read_weave(ObjectReader& reader, fab::WeaveParams& weave) {
     } else {
         read_choice(reader, "pattern", weave.pattern, kPatterns);
     }
+    if (const json* most = reader.get("max_float")) {
+        weave.max_float = read_integer(*most, reader.path_of("max_float"), kCount);
+    }
 }
 
 void read_fit(ObjectReader& reader, fab::FitParams& fit) {

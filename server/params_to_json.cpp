@@ -100,6 +100,9 @@ json params_to_json(const fab::JobParams& params) {
     } else {
         result["weave"]["pattern"] = name_of(kPatterns, params.weave.pattern);
     }
+    if (params.weave.max_float) {
+        result["weave"]["max_float"] = *params.weave.max_float;
+    }
     result["fit"] = {
         {"columns", name_of(kColumnRuns, params.fit.columns)},
         {"joint", name_of(kJoint, params.fit.joint)},

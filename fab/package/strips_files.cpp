@@ -1,4 +1,4 @@
-// The package's strips, weave and layout: strips.json, weave.json, layout.json.
+// The package's strips and layout: strips.json, layout.json.
 
 #include <string>
 
@@ -90,26 +90,6 @@ json piece_json(const Piece& piece) {
             {"end_tab", tab_json(piece.end_tab)}};
 }
 
-json pattern_json(const WeaveParams& weave) {
-    switch (weave.pattern) {
-        case WeavePattern::Plain:
-            return "plain";
-        case WeavePattern::Twill2x2:
-            return "twill-2x2";
-        case WeavePattern::DoubleWarp:
-            return "double-warp";
-        case WeavePattern::DoubleWeft:
-            return "double-weft";
-        case WeavePattern::Satin5:
-            return "satin-5";
-        case WeavePattern::Basket2x2:
-            return "basket-2x2";
-        case WeavePattern::Matrix:
-            break;
-    }
-    return weave.matrix;
-}
-
 json sheet_json(const Sheet& sheet) {
     json placements = json::array();
     for (const Placement& placement : sheet.placements) {
@@ -151,14 +131,6 @@ std::string strips_json(const JobResult& job) {
     const json file = {{"format", "leafcutter-strips/1"},
                        {"strips", std::move(strips)},
                        {"pieces", std::move(pieces)}};
-    return file.dump() + "\n";
-}
-
-std::string weave_json(const JobResult& job) {
-    const json file = {
-        {"format", "leafcutter-weave/1"},       {"pattern", pattern_json(job.params.weave)},
-        {"warp_on_top", job.weave.warp_on_top}, {"seams", job.weave.seams},
-        {"seam_mm", job.weave.seam_mm},         {"shortest_seam_proven", job.weave.shortest}};
     return file.dump() + "\n";
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "fab/weave/pattern_starts.h"
@@ -12,37 +13,18 @@ namespace leafcutter::fab {
 
 namespace {
 
-using Matrix = std::vector<std::vector<int>>;
+using Matrix = PatternMatrix;
 
 constexpr std::size_t kMostShifts = 64;
 
-// Rows of the matrix follow rows of the grid, 1 = warp on top.
-Matrix pattern_matrix(const WeaveParams& params) {
-    switch (params.pattern) {
-        case WeavePattern::Plain:
-            return {{0, 1}, {1, 0}};
-        case WeavePattern::Twill2x2:
-            return {{1, 1, 0, 0}, {0, 1, 1, 0}, {0, 0, 1, 1}, {1, 0, 0, 1}};
-        case WeavePattern::DoubleWarp:
-            return {{1}};
-        case WeavePattern::DoubleWeft:
-            return {{0}};
-        case WeavePattern::Satin5:
-            return {{1, 0, 0, 0, 0},
-                    {0, 0, 1, 0, 0},
-                    {0, 0, 0, 0, 1},
-                    {0, 1, 0, 0, 0},
-                    {0, 0, 0, 1, 0}};
-        case WeavePattern::Basket2x2:
-            return {{1, 1, 0, 0}, {1, 1, 0, 0}, {0, 0, 1, 1}, {0, 0, 1, 1}};
-        case WeavePattern::Matrix:
-            break;
-    }
-    return params.matrix;
-}
-
 // Of a cylinder against the pattern's own beginning.
 struct Shift {
+    int row = 0;
+    int col = 0;
+    bool turned = false;  // By 180 degrees.
+};
+
+struct Step {
     int row = 0;
     int col = 0;
 };
@@ -57,11 +39,15 @@ std::uint8_t cell_of(const Matrix& matrix, int row, int col) {
     return line[static_cast<std::size_t>(wrapped(col, line.size()))] != 0 ? 1 : 0;
 }
 
-// Whether shifted like this the pattern is the same.
-bool is_period(const Matrix& matrix, int row_shift, int col_shift) {
+std::uint8_t shifted_cell(const Matrix& matrix, const Shift& shift, int row, int col) {
+    const int way = shift.turned ? -1 : 1;
+    return cell_of(matrix, shift.row + way * row, shift.col + way * col);
+}
+
+bool same_pattern(const Matrix& matrix, const Shift& one, const Shift& other) {
     for (int row = 0; row < static_cast<int>(matrix.size()); ++row) {
         for (int col = 0; col < static_cast<int>(matrix.front().size()); ++col) {
-            if (cell_of(matrix, row, col) != cell_of(matrix, row + row_shift, col + col_shift)) {
+            if (shifted_cell(matrix, one, row, col) != shifted_cell(matrix, other, row, col)) {
                 return false;
             }
         }
@@ -69,29 +55,22 @@ bool is_period(const Matrix& matrix, int row_shift, int col_shift) {
     return true;
 }
 
-// Shifts that give different patterns; only the first where there are more than can be tried.
+// Beginnings that give different patterns; only the first where there are more than can be tried.
 std::vector<Shift> different_shifts(const Matrix& matrix) {
     const int rows = static_cast<int>(matrix.size());
     const int cols = static_cast<int>(matrix.front().size());
-    std::vector<char> period(matrix.size() * matrix.front().size(), 0);
-    const auto at = [cols](int row, int col) {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) +
-               static_cast<std::size_t>(col);
-    };
-    for (int row = 0; row < rows; ++row) {
-        for (int col = 0; col < cols; ++col) {
-            period[at(row, col)] = is_period(matrix, row, col) ? 1 : 0;
-        }
-    }
     std::vector<Shift> shifts;
-    for (int row = 0; row < rows; ++row) {
-        for (int col = 0; col < cols; ++col) {
-            const auto like = [&](const Shift& known) {
-                return period[at(wrapped(row - known.row, matrix.size()),
-                                 wrapped(col - known.col, matrix.front().size()))] != 0;
-            };
-            if (std::none_of(shifts.begin(), shifts.end(), like)) {
-                shifts.push_back({row, col});
+    for (const bool turned : {false, true}) {
+        for (int row = 0; row < rows; ++row) {
+            for (int col = 0; col < cols; ++col) {
+                const Shift shift{row, col, turned};
+                const auto like = [&](const Shift& known) {
+                    return same_pattern(matrix, known, shift);
+                };
+                if (shifts.size() <= kMostShifts &&
+                    std::none_of(shifts.begin(), shifts.end(), like)) {
+                    shifts.push_back(shift);
+                }
             }
         }
     }
@@ -117,7 +96,7 @@ public:
         weave.shortest = shift_cylinders();
         weave.warp_on_top.reserve(mesh_.quads.size());
         for (std::size_t quad = 0; quad < mesh_.quads.size(); ++quad) {
-            weave.warp_on_top.push_back(top(quad, shift_of(quad), Shift{}));
+            weave.warp_on_top.push_back(top(quad, shift_of(quad), Step{}));
         }
         for (std::size_t quad = 0; quad < mesh_.quads.size(); ++quad) {
             for (std::size_t side = 0; side < 4; ++side) {
@@ -133,7 +112,7 @@ public:
 
 private:
     // What lies behind the sides a-b, b-c, c-d and d-a of a quad.
-    static constexpr std::array<Shift, 4> kSteps{{{-1, 0}, {0, 1}, {1, 0}, {0, -1}}};
+    static constexpr std::array<Step, 4> kSteps{{{-1, 0}, {0, 1}, {1, 0}, {0, -1}}};
 
     std::size_t cylinder_of(std::size_t quad) const {
         return static_cast<std::size_t>(mesh_.addresses[quad].cylinder);
@@ -144,19 +123,18 @@ private:
     }
 
     // 1 where the pattern says warp, a step aside from the quad.
-    std::uint8_t top(std::size_t quad, const Shift& shift, const Shift& step) const {
+    std::uint8_t top(std::size_t quad, const Shift& shift, const Step& step) const {
         const geometry::QuadAddress& address = mesh_.addresses[quad];
-        return cell_of(matrix_, address.row + shift.row + step.row,
-                       address.col + shift.col + step.col);
+        return shifted_cell(matrix_, shift, address.row + step.row, address.col + step.col);
     }
 
     // Whether the pattern of either side of an edge does not go on behind it.
     bool breaks(std::size_t quad, std::size_t side, const Shift& own, const Shift& others) const {
         const geometry::QuadSide& behind = neighbours_.across[quad][side];
         const auto other = static_cast<std::size_t>(behind.quad);
-        const Shift& back = kSteps[static_cast<std::size_t>(behind.side)];
-        return top(other, others, Shift{}) != top(quad, own, kSteps[side]) ||
-               top(quad, own, Shift{}) != top(other, others, back);
+        const Step& back = kSteps[static_cast<std::size_t>(behind.side)];
+        return top(other, others, Step{}) != top(quad, own, kSteps[side]) ||
+               top(quad, own, Step{}) != top(other, others, back);
     }
 
     double side_length(std::size_t quad, std::size_t side) const {
@@ -217,7 +195,9 @@ private:
     }
 
     // Every beginning gives the same.
-    bool is_constant() const { return is_period(matrix_, 0, 1) && is_period(matrix_, 1, 0); }
+    bool is_constant() const {
+        return same_pattern(matrix_, {}, {0, 1, false}) && same_pattern(matrix_, {}, {1, 0, false});
+    }
 
     const geometry::QuadMesh& mesh_;
     Matrix matrix_;
@@ -229,11 +209,10 @@ private:
 }  // namespace
 
 Weave weave_cells(const geometry::QuadMesh& mesh, const WeaveParams& params) {
-    return Weaver(mesh, pattern_matrix(params)).run();
-}
-
-int pattern_period(const WeaveParams& params) {
-    return static_cast<int>(pattern_matrix(params).front().size());
+    const std::optional<int> limit = float_limit(params);
+    Weave weave = Weaver(mesh, pattern_matrix(params)).run();
+    weave.floats = limit_floats(mesh, limit, weave.warp_on_top);
+    return weave;
 }
 
 }  // namespace leafcutter::fab
