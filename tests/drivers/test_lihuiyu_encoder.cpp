@@ -1,6 +1,9 @@
 // From G-code to the bytes of a Lihuiyu board, and back.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 #include <fmt/format.h>
@@ -16,7 +19,6 @@ namespace leafcutter::drivers {
 namespace {
 
 using testing::HasSubstr;
-using testing::StartsWith;
 
 // A bed whose program coordinates are steps right of and below the home corner... in mm of one
 // step.
@@ -170,6 +172,253 @@ TEST(LihuiyuEncoder, CrossesSmallGapsWithoutARapidMove) {
     const std::string stream =
         encoded({{100, 0, true, 20, 0}, {160, 0, false, 0, 0}, {200, 0, true, 20, 0}});
     EXPECT_THAT(stream, HasSubstr("DB100UB060DB|oU"));
+}
+
+// A random program: places in steps, about half of the moves burning, three speeds.
+std::vector<CutMove> random_moves(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto pick = [&random](int low, int high) {
+        return std::uniform_int_distribution<int>(low, high)(random);
+    };
+    constexpr std::array<double, 3> kSpeeds{12.5, 20.0, 133.0};
+    std::vector<CutMove> moves;
+    double x = 6000.0;
+    double y = -4000.0;
+    for (int i = 0; i < 60; ++i) {
+        const int reach =
+            std::array<int, 4>{3, 40, 300, 5000}[static_cast<std::size_t>(pick(0, 3))];
+        x = std::clamp(x + pick(-reach, reach), 0.0, 12000.0);
+        y = std::clamp(y + pick(-reach, reach), -8000.0, 0.0);
+        moves.push_back({x, y, pick(0, 1) == 1, kSpeeds[static_cast<std::size_t>(pick(0, 2))], 0});
+    }
+    return moves;
+}
+
+double distance_to_line(const StepPlace& a, const StepPlace& b, double x, double y) {
+    const double dx = static_cast<double>(b.x - a.x);
+    const double dy = static_cast<double>(b.y - a.y);
+    const double px = x - static_cast<double>(a.x);
+    const double py = y - static_cast<double>(a.y);
+    const double along =
+        std::clamp((px * dx + py * dy) / std::max(dx * dx + dy * dy, 1e-9), 0.0, 1.0);
+    return std::hypot(px - along * dx, py - along * dy);
+}
+
+// Takes the pieces of one burning move from the front: they lead to its end, at its speed, within
+// half a step of its line, the beam on all the way.
+void expect_drawn(const std::vector<Drawn>& drawn,
+                  std::size_t& next,
+                  const StepPlace& from,
+                  const CutMove& move) {
+    const StepPlace to = to_steps(bed_in_steps(), move.x_mm, move.y_mm);
+    StepPlace at = from;
+    while (!(at == to)) {
+        ASSERT_LT(next, drawn.size());
+        const Drawn& piece = drawn[next++];
+        ASSERT_TRUE(piece.beam);
+        ASSERT_TRUE(piece.from == at);
+        EXPECT_NEAR(piece.speed, move.speed_mm_per_s, 0.01 * move.speed_mm_per_s);
+        EXPECT_LE(distance_to_line(from, to, static_cast<double>(piece.to.x),
+                                   static_cast<double>(piece.to.y)),
+                  0.5 + 1e-9);
+        at = piece.to;
+    }
+}
+
+TEST(LihuiyuEncoder, DecodesToTheSegmentsItWasMadeOf) {
+    for (unsigned seed = 1; seed <= 200; ++seed) {
+        EncoderOptions options = in_steps();
+        options.longest_burn_s = seed % 2 == 0 ? 0.5 : 0.02;
+        const std::vector<CutMove> moves = random_moves(seed);
+        // Runs that go on from one move into the next are one: cut them where the moves end.
+        std::vector<Drawn> drawn;
+        for (const Drawn& piece : decode(encode_job(moves, {}, options).stream())) {
+            const long steps = std::max(std::labs(piece.to.x - piece.from.x),
+                                        std::labs(piece.to.y - piece.from.y));
+            StepPlace at = piece.from;
+            for (long i = 1; i <= steps && piece.beam; ++i) {
+                const StepPlace to{piece.from.x + (piece.to.x - piece.from.x) * i / steps,
+                                   piece.from.y + (piece.to.y - piece.from.y) * i / steps};
+                drawn.push_back({at, to, true, piece.speed});
+                at = to;
+            }
+        }
+        std::size_t next = 0;
+        StepPlace at;
+        for (const CutMove& move : moves) {
+            if (move.beam) {
+                ASSERT_NO_FATAL_FAILURE(expect_drawn(drawn, next, at, move)) << "seed " << seed;
+            }
+            at = to_steps(bed_in_steps(), move.x_mm, move.y_mm);
+        }
+        EXPECT_EQ(next, drawn.size()) << "seed " << seed;
+    }
+}
+
+TEST(LihuiyuEncoder, EndsAtTheLastPlaceWhateverComesBefore) {
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+        const std::vector<CutMove> moves = random_moves(seed);
+        const EncodedJob job = encode_job(moves, {77, 11}, in_steps());
+        const StepPlace end = to_steps(bed_in_steps(), moves.back().x_mm, moves.back().y_mm);
+        EXPECT_TRUE(job.packets.back().end == end);
+        LihuiyuInterpreter interpreter;
+        StepPlace at{77, 11};
+        for (const char byte : job.stream()) {
+            for (const BoardAction& action : interpreter.take(byte)) {
+                at.x += action.dx;
+                at.y += action.dy;
+            }
+        }
+        EXPECT_TRUE(at == end) << "seed " << seed;
+    }
+}
+
+TEST(LihuiyuEncoder, FillsEveryPacketWithoutAPadInsideTheProgram) {
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+        const EncodedJob job = encode_job(random_moves(seed), {}, in_steps());
+        const std::string stream = job.stream();
+        EXPECT_EQ(stream.find('F'), stream.rfind("FNSE"));
+        EXPECT_NE(stream.back(), 'E');  // An M3 forgets a program that fills its last packet.
+    }
+}
+
+TEST(LihuiyuEncoder, AddsAPacketWhereAProgramWouldFillTheLast) {
+    bool seen = false;
+    for (int steps = 1; steps < 2000; steps += 7) {
+        const std::string stream = encoded({{1.0 * steps, 0, true, 20, 0}, {0, 0, true, 20, 0}});
+        ASSERT_EQ(stream.size() % kPayloadBytes, 0U);
+        ASSERT_EQ(stream.back(), 'F');
+        seen =
+            seen || stream.substr(stream.size() - kPayloadBytes) == std::string(kPayloadBytes, 'F');
+    }
+    for (unsigned seed = 1; seed <= 300; ++seed) {
+        const std::string stream = encode_job(random_moves(seed), {}, in_steps()).stream();
+        seen =
+            seen || stream.substr(stream.size() - kPayloadBytes) == std::string(kPayloadBytes, 'F');
+    }
+    EXPECT_TRUE(seen);
+}
+
+TEST(CutMoves, FollowArcsWithinHalfAStep) {
+    const auto moves = read_cut_moves(
+        "M4\nG0 X30 Y20\nG3 X10 Y20 I-10 J0 S5 F600\nG2 X30 Y20 R10\nG91\nG1 X1 Y0\n");
+    double worst = 0.0;
+    for (std::size_t i = 1; i + 1 < moves.size(); ++i) {
+        EXPECT_TRUE(moves[i].beam);
+        EXPECT_DOUBLE_EQ(moves[i].speed_mm_per_s, 10.0);
+        const double mx = (moves[i].x_mm + moves[i - 1].x_mm) / 2.0;
+        const double my = (moves[i].y_mm + moves[i - 1].y_mm) / 2.0;
+        worst = std::max(worst, std::abs(std::hypot(mx - 20.0, my - 20.0) - 10.0));
+    }
+    EXPECT_LE(worst, 0.0127 + 1e-9);
+    EXPECT_GT(worst, 0.005);
+    EXPECT_NEAR(moves.back().x_mm, 31.0, 1e-12);
+    EXPECT_NEAR(moves.back().y_mm, 20.0, 1e-12);
+}
+
+TEST(CutMoves, UseInchesAndTheBeamOnlyWithPower) {
+    const auto moves = read_cut_moves("G20\nM3 S10\nG0 X1\nG1 X2 F60\nG1 X3 S0\nM5\nG1 X4\n");
+    ASSERT_EQ(moves.size(), 4U);
+    EXPECT_DOUBLE_EQ(moves[1].x_mm, 50.8);
+    EXPECT_TRUE(moves[1].beam);
+    EXPECT_DOUBLE_EQ(moves[1].speed_mm_per_s, 25.4);
+    EXPECT_FALSE(moves[0].beam || moves[2].beam || moves[3].beam);
+}
+
+// As MeerK40t and K40 Whisperer write them: with line ends, "-", and the beam left to N.
+constexpr std::string_view kForeignEgv =
+    "Document type : LHYMICRO-GL file\n"
+    "File version: 1.0.01\n"
+    "Copyright: Unknown\n"
+    "Creator-Software: another\n"
+    "\n"
+    "%0%0%0%0%\n"
+    "IBzzzvRzzzvS1P\n"
+    "ICV2490731016000027CNLBS1EDz139Rz139Tz139Lz139FNSE-\n";
+
+TEST(Egv, IsReadAsOtherProgramsWriteIt) {
+    const std::vector<CutMove> moves = read_egv(kForeignEgv, {}, bed_in_steps());
+    ASSERT_EQ(moves.size(), 5U);
+    EXPECT_FALSE(moves[0].beam);
+    EXPECT_EQ(moves[0].x_mm, 787);
+    EXPECT_EQ(moves[0].y_mm, -787);
+    EXPECT_TRUE(moves[4].beam);
+    EXPECT_NEAR(moves[4].speed_mm_per_s, 15.0, 0.01);
+    EXPECT_EQ(moves[2].x_mm, 787 + 394);
+    EXPECT_EQ(moves[2].y_mm, -787 - 394);
+    EXPECT_EQ(moves[4].y_mm, -787);
+}
+
+TEST(Egv, IsReadBackAsItWasWritten) {
+    for (unsigned seed = 1; seed <= 50; ++seed) {
+        const EncodedJob job = encode_job(random_moves(seed), {}, in_steps());
+        const std::string egv = write_egv(job);
+        ASSERT_TRUE(is_egv(egv));
+        const EncodedJob again = encode_job(read_egv(egv, {}, bed_in_steps()), {}, in_steps());
+        EXPECT_DOUBLE_EQ(again.burn_mm, job.burn_mm) << "seed " << seed;
+        EXPECT_TRUE(again.packets.back().end == job.packets.back().end);
+    }
+}
+
+TEST(Egv, IsRefusedWhenCutShortAnywhere) {
+    const std::string egv = write_egv(encode_job({{100, -50, true, 20, 0}}, {}, in_steps()));
+    const std::size_t end = egv.rfind("FNSE") + 4;
+    for (std::size_t cut = 0; cut < end; ++cut) {
+        const std::string_view part = std::string_view(egv).substr(0, cut);
+        const bool nothing_begun = cut > 0 && part.back() == '%';
+        if (!nothing_begun || cut < egv.find("%0%0%0%0%") + 9) {
+            EXPECT_THROW(read_egv(part, {}, bed_in_steps()), ProgramRefused) << cut;
+        }
+    }
+}
+
+TEST(Egv, RefusesRasterAndNoise) {
+    const std::string head = "Document type : LHYMICRO-GL file\nFile version: 1\n\n%0%0%0%0%";
+    for (const char* body :
+         {"IV1552121G002NLBS1EDnUxTtFNSE", "ICV1752231021000191NRBS1EDB1x0FNSE", "hello",
+          "ICV9992231NRBS1EBaFNSE", "INRBS1EBaFNSE", "ICV1752231021000191NRBS1EB12FNSE"}) {
+        EXPECT_THROW(read_egv(head + body, {}, bed_in_steps()), ProgramRefused) << body;
+    }
+}
+
+// Any bytes: the interpreter complains, and neither fails nor lights a beam outside a cut.
+TEST(LihuiyuInterpreter, TakesAnyBytes) {
+    std::mt19937 random(7);
+    const std::string letters = "ICVNRBTLMS1EDUFP@G|abz0123456789W\n\xFF";
+    for (int round = 0; round < 300; ++round) {
+        LihuiyuInterpreter interpreter;
+        for (int i = 0; i < 300; ++i) {
+            const char byte = letters[random() % letters.size()];
+            for (const BoardAction& action : interpreter.take(byte)) {
+                EXPECT_FALSE(action.beam && action.kind != BoardAction::Kind::Cut);
+            }
+        }
+    }
+}
+
+TEST(LihuiyuInterpreter, ReportsWhatACarefulProgramNeverSends) {
+    const auto complaint = [](std::string_view stream) {
+        LihuiyuInterpreter interpreter;
+        for (const char byte : stream) {
+            for (const BoardAction& action : interpreter.take(byte)) {
+                if (action.kind == BoardAction::Kind::Violation) {
+                    return action.text;
+                }
+            }
+        }
+        return std::string();
+    };
+    const std::string cut = "ICV1752231021000191NRBS1E";
+    EXPECT_EQ(complaint(cut + "DBaUFNSEFFF"), "");
+    EXPECT_THAT(complaint(cut + "DBaFNSE"), HasSubstr("beam is still on"));
+    EXPECT_THAT(complaint(cut + "BaX"), HasSubstr("'X'"));
+    EXPECT_THAT(complaint(cut + "B12U"), HasSubstr("three digits"));
+    EXPECT_THAT(complaint(cut + "B999"), HasSubstr("above 255"));
+    EXPECT_THAT(complaint("IDS1P"), HasSubstr("lit outside"));
+    EXPECT_THAT(complaint("INRBS1E"), HasSubstr("without a speed"));
+    EXPECT_THAT(complaint("IV1752231NRBS1E"), HasSubstr("raster"));
+    EXPECT_THAT(complaint("Ba"), HasSubstr("outside a program"));
+    EXPECT_THAT(complaint(cut + "DI"), HasSubstr("middle of a cut"));
 }
 
 }  // namespace
