@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "fab/cut/certificate_facts.h"
 #include "fab/cut/cut_program.h"
 #include "fab/job_params.h"
 #include "fab/layout.h"
@@ -34,13 +35,6 @@ struct InputFacts {
     std::size_t vertices = 0;
     std::size_t faces = 0;
     double scale = 1.0;  // The factor applied to its coordinates.
-};
-
-// How truly the cut pieces give the surface back; see certificate.h.
-struct Certificate {
-    double largest_deviation_relative = 0.0;
-    double largest_deviation_mm = 0.0;
-    int edges_compared = 0;
 };
 
 // A hole that the foliation opened.

@@ -357,7 +357,7 @@ private:
             context.check();
             gcode.push_back(write_gcode(program, options_.machine, result_.params.output.dialect));
         }
-        result_.certificate = certify(result_, gcode);
+        result_.certificate = certify(result_, gcode, context);
         result_.warnings = joined_warnings(warnings_);
         files.push_back({"surface.ply", surface_ply(result_)});
         files.push_back({"quads.obj", quads_obj(result_)});

@@ -53,6 +53,7 @@ struct ModalState {
     int motion = 0;
     bool laser = false;
     double power = 0.0;
+    double feed_mm_per_min = 0.0;
 };
 
 struct Line {
@@ -85,6 +86,9 @@ void apply_word(char letter, double value, ModalState& state, Line& line) {
     switch (letter) {
         case 'S':
             state.power = value;
+            break;
+        case 'F':
+            state.feed_mm_per_min = value;
             break;
         case 'X':
             line.to.x() = value;
@@ -125,6 +129,11 @@ Line read_line(std::string_view text, ModalState& state, int number) {
     return line;
 }
 
+bool turns_laser_on(std::string_view gcode) {
+    return gcode.find("\nM3") != std::string_view::npos ||
+           gcode.find("\nM4") != std::string_view::npos;
+}
+
 }  // namespace
 
 BurnAudit audit_burn(const CutProgram& plan, std::span<const BurntSegment> burnt) {
@@ -161,6 +170,7 @@ BurnAudit audit_burn(const CutProgram& plan, std::span<const BurntSegment> burnt
 std::vector<BurntSegment> burnt_segments(std::string_view gcode) {
     std::vector<BurntSegment> burnt;
     ModalState state;
+    state.laser = !turns_laser_on(gcode);
     int number = 0;
     while (!gcode.empty()) {
         const std::size_t end = std::min(gcode.find('\n'), gcode.size());
@@ -173,7 +183,7 @@ std::vector<BurntSegment> burnt_segments(std::string_view gcode) {
             continue;
         }
         if (state.motion == 1 && state.laser && state.power > 0.0 && line.to != state.at) {
-            burnt.push_back({state.at, line.to});
+            burnt.push_back({state.at, line.to, state.power, state.feed_mm_per_min});
         }
         state.at = line.to;
     }

@@ -18,6 +18,8 @@ namespace leafcutter::fab {
 struct BurntSegment {
     Eigen::Vector2d from;
     Eigen::Vector2d to;
+    double power = 0.0;            // The S word; 0 where it is not known.
+    double feed_mm_per_min = 0.0;  // The F word, likewise.
 };
 
 struct BurnAudit {
@@ -29,7 +31,8 @@ struct BurnAudit {
 
 BurnAudit audit_burn(const CutProgram& plan, std::span<const BurntSegment> burnt);
 
-// The segments that a G-code program of ours burns (G0, G1, M3/M4/M5, S), read back from its text.
+// The segments that a G-code program of ours burns (G0, G1, M3/M4/M5, S, F), read back from its
+// text. A program that never turns the laser on (Smoothieware) burns with the power word alone.
 std::vector<BurntSegment> burnt_segments(std::string_view gcode);
 
 }  // namespace leafcutter::fab

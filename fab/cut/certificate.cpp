@@ -1,239 +1,254 @@
 #include "fab/cut/certificate.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
+#include <string_view>
+#include <utility>
 
-#include <polyclipping/clipper.hpp>
+#include <fmt/format.h>
 
-#include "fab/cut/audit.h"
+#include "fab/cut/piece_finder.h"
+#include "fab/cut/piece_measure.h"
+#include "fab/cut/sheet_reader.h"
+#include "fab/cut/virtual_weave.h"
 #include "fab/strips/unfold.h"
 
 namespace leafcutter::fab {
 
 namespace {
 
-using Eigen::Vector2d;
+using Eigen::Vector3d;
 
-constexpr double kUnitsPerMm = 1e6;
-constexpr double kJoinMm = 1e-6;  // Ends of burns this close follow each other.
-
-struct Bounds {
-    Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
-    Vector2d high = -low;
-
-    void add(const Vector2d& point) {
-        low = low.cwiseMin(point);
-        high = high.cwiseMax(point);
-    }
-    double difference(const Bounds& other) const {
-        return std::max((low - other.low).cwiseAbs().maxCoeff(),
-                        (high - other.high).cwiseAbs().maxCoeff());
-    }
-};
-
-template <typename Points>
-Bounds bounds_of(const Points& points) {
-    Bounds bounds;
-    for (const Vector2d& point : points) {
-        bounds.add(point);
-    }
-    return bounds;
-}
-
-// Closed contours among the burns, each without its closing point.
-std::vector<Ring> closed_contours(std::span<const BurntSegment> burnt) {
-    std::vector<Ring> contours;
-    Ring chain;
-    for (const BurntSegment& segment : burnt) {
-        if (chain.empty() || (chain.back() - segment.from).norm() > kJoinMm) {
-            chain = {segment.from};
-        }
-        if ((segment.to - chain.front()).norm() <= kJoinMm && chain.size() > 2) {
-            contours.push_back(std::move(chain));
-            chain.clear();
-        } else {
-            chain.push_back(segment.to);
-        }
-    }
-    return contours;
-}
-
-Vector2d into_piece(const Placement& placement, const Vector2d& point) {
-    const double angle = placement.rotation_deg * std::numbers::pi / 180.0;
-    const Vector2d moved = point - Vector2d(placement.x_mm, placement.y_mm);
-    const double x = std::cos(angle) * moved.x() + std::sin(angle) * moved.y();
-    const double y = -std::sin(angle) * moved.x() + std::cos(angle) * moved.y();
-    return {placement.mirrored ? -x : x, y};
-}
-
-// The ring moved inward by half the kerf; the largest one if it falls apart.
-Ring without_kerf(const Ring& ring, double kerf_mm) {
-    ClipperLib::Path path;
-    for (const Vector2d& point : ring) {
-        path.emplace_back(std::llround(point.x() * kUnitsPerMm),
-                          std::llround(point.y() * kUnitsPerMm));
-    }
-    ClipperLib::ClipperOffset offset;
-    offset.AddPath(path, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
-    ClipperLib::Paths shrunk;
-    offset.Execute(shrunk, -kerf_mm / 2.0 * kUnitsPerMm);
-    Ring result;
-    double largest = 0.0;
-    for (const ClipperLib::Path& contour : shrunk) {
-        const double area = std::abs(ClipperLib::Area(contour));
-        if (area > largest) {
-            largest = area;
-            result.clear();
-            for (const ClipperLib::IntPoint& point : contour) {
-                result.emplace_back(static_cast<double>(point.X) / kUnitsPerMm,
-                                    static_cast<double>(point.Y) / kUnitsPerMm);
-            }
-        }
-    }
-    return result;
-}
-
-Vector2d nearest_on(const Ring& ring, const Vector2d& point) {
-    Vector2d best = ring.front();
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const Vector2d& from = ring[i];
-        const Vector2d along = ring[(i + 1) % ring.size()] - from;
-        const double length2 = along.squaredNorm();
-        const double t =
-            length2 > 0.0 ? std::clamp((point - from).dot(along) / length2, 0.0, 1.0) : 0.0;
-        const Vector2d candidate = from + t * along;
-        if ((candidate - point).squaredNorm() < (best - point).squaredNorm()) {
-            best = candidate;
-        }
-    }
-    return best;
-}
-
-double mean_edge(const geometry::QuadMesh& mesh) {
-    double sum = 0.0;
-    for (const auto& quad : mesh.quads) {
-        for (std::size_t i = 0; i < 4; ++i) {
-            sum += (mesh.vertices[static_cast<std::size_t>(quad[i])] -
-                    mesh.vertices[static_cast<std::size_t>(quad[(i + 1) % 4])])
-                       .norm();
-        }
-    }
-    return sum / (4.0 * static_cast<double>(mesh.quads.size()));
+std::size_t index(int value) {
+    return static_cast<std::size_t>(value);
 }
 
 class Certifier {
 public:
-    explicit Certifier(const JobResult& job) : job_(job), mean_edge_mm_(mean_edge(job.quads)) {
+    Certifier(const JobResult& job, const geometry::Context& context)
+        : job_(job),
+          context_(context),
+          finder_(job.pieces, {job.weft.kerf_mm, job.warp.kerf_mm}),
+          found_(job.pieces.size()) {
         for (const Strip& strip : job.strips) {
             strips_[strip.id] = &strip;
         }
-        for (const Piece& piece : job.pieces) {
-            pieces_[piece.id] = &piece;
-        }
+        certificate_.pieces = static_cast<int>(job.pieces.size());
+        certificate_.diagonal_mm = diagonal_of(job.quads.vertices);
     }
 
-    void add_sheet(const Sheet& sheet, const std::string& gcode) {
-        const std::vector<BurntSegment> burnt = burnt_segments(gcode);
-        const std::vector<Ring> contours = closed_contours(burnt);
-        std::vector<Bounds> bounds;
-        bounds.reserve(contours.size());
-        for (const Ring& contour : contours) {
-            bounds.push_back(bounds_of(contour));
+    void add_program(const std::string& gcode) {
+        BurntSheet sheet = read_sheet(gcode);
+        for (BurntPiece& piece : sheet.pieces) {
+            context_.check();
+            read_.push_back(read_piece(std::move(piece)));
         }
-        for (const Placement& placement : sheet.placements) {
-            const Piece& piece = *pieces_.at(placement.piece);
-            const double kerf_mm = job_.material_of(piece.family).kerf_mm;
-            const auto match = best_match(placement, piece, kerf_mm, bounds);
-            if (!match) {
-                note(mean_edge_mm_);
+        stray_lines_ += sheet.stray_lines;
+    }
+
+    Certificate result() {
+        match_by_id();
+        match_by_shape();
+        if (stray_lines_ > 0) {
+            fault(fmt::format("{} lines are burnt outside every piece", stray_lines_));
+        }
+        for (std::size_t i = 0; i < found_.size(); ++i) {
+            context_.check();
+            if (!found_[i]) {
+                ++certificate_.missing;
+                fault(fmt::format("{}: no sheet holds it", job_.pieces[i].id));
                 continue;
             }
-            Ring contour;
-            for (const Vector2d& point : contours[*match]) {
-                contour.push_back(into_piece(placement, point));
-            }
-            measure(piece, without_kerf(contour, kerf_mm));
+            check_outline(*found_[i]);
+            measure(*found_[i]);
         }
+        weave();
+        conclude();
+        return std::move(certificate_);
     }
-
-    Certificate result() const { return certificate_; }
 
 private:
-    static std::optional<std::size_t> best_match(const Placement& placement,
-                                                 const Piece& piece,
-                                                 double kerf_mm,
-                                                 const std::vector<Bounds>& bounds) {
-        Bounds expected;
-        for (const Vector2d& point : piece.outline) {
-            expected.add(placement.apply(point));
-        }
-        expected.low.array() -= kerf_mm / 2.0;
-        expected.high.array() += kerf_mm / 2.0;
-        std::optional<std::size_t> best;
-        for (std::size_t i = 0; i < bounds.size(); ++i) {
-            if (!best || bounds[i].difference(expected) < bounds[*best].difference(expected)) {
-                best = i;
+    void fault(std::string words) { faults_.push_back(std::move(words)); }
+
+    void match_by_id() {
+        for (std::size_t i = 0; i < read_.size(); ++i) {
+            context_.check();
+            const ReadPiece& read = read_[i];
+            const auto piece = read.id.empty() ? std::nullopt : finder_.named(read.id);
+            if (!piece) {
+                certificate_.unread += read.id.empty() ? 1 : 0;
+                if (!read.id.empty()) {
+                    fault(fmt::format("{} is engraved on a piece, but there is none", read.id));
+                }
+                nameless_.push_back(i);
+                continue;
+            }
+            auto laid = finder_.lay(read, *piece);
+            if (!laid) {
+                nameless_.push_back(i);
+                continue;
+            }
+            std::optional<FoundPiece>& found = found_[*piece];
+            if (found) {
+                ++certificate_.duplicates;
+                fault(fmt::format("{}: two contours bear its id", read.id));
+            } else {
+                ++certificate_.matched_by_id;
+            }
+            if (!found || laid->miss_mm < found->registration.miss_mm) {
+                found = FoundPiece{i, *piece, true, std::move(*laid)};
             }
         }
-        return best;
     }
 
-    void measure(const Piece& piece, const Ring& burnt) {
-        if (burnt.empty()) {
-            note(mean_edge_mm_);
+    void match_by_shape() {
+        std::vector<char> free(found_.size());
+        for (std::size_t i = 0; i < found_.size(); ++i) {
+            free[i] = found_[i] ? 0 : 1;
+        }
+        for (const std::size_t i : nameless_) {
+            context_.check();
+            auto found = finder_.by_shape(read_[i], free);
+            if (!found) {
+                ++certificate_.extra_contours;
+                fault(fmt::format("a contour of {} corners is no piece of this job",
+                                  read_[i].burnt.contour.size()));
+                continue;
+            }
+            ++certificate_.matched_by_shape;
+            found->read = i;
+            free[found->piece] = 0;
+            found_[found->piece] = std::move(*found);
+        }
+    }
+
+    // What is wrong with a contour that is not its piece's outline.
+    void check_outline(const FoundPiece& found) {
+        const Piece& piece = job_.pieces[found.piece];
+        const ReadPiece& read = read_[found.read];
+        const int passes = std::max(1, job_.material_of(piece.family).cut.passes);
+        if (read.burnt.times > passes) {
+            ++certificate_.duplicates;
+            fault(fmt::format("{}: is cut {} times in one place", piece.id, read.burnt.times));
+        }
+        const double miss = found.registration.miss_mm;
+        certificate_.largest_outline_error_mm =
+            std::max(certificate_.largest_outline_error_mm, miss);
+        if (miss <= kLargestOutlineMm) {
             return;
         }
-        const auto rebuilt = [&](const Polyline& exact, const Polyline& planned) {
-            Polyline points;
-            for (std::size_t i = 0; i < exact.size(); ++i) {
-                points.emplace_back(exact[i] + nearest_on(burnt, planned[i]) - planned[i]);
-            }
-            return points;
-        };
-        const Polyline left = rebuilt(piece.left, piece.cut_left);
-        const Polyline right = rebuilt(piece.right, piece.cut_right);
+        const auto turned = finder_.lay_mirrored(read, found.piece);
+        if (turned && turned->miss_mm <= kLargestOutlineMm) {
+            ++certificate_.mirrored;
+            fault(fmt::format("{}: its contour is mirrored", piece.id));
+            return;
+        }
+        const std::vector<char> all(found_.size(), 1);
+        const auto other = finder_.by_shape(read, all);
+        fault(other ? fmt::format("{}: is engraved on the contour of {}", piece.id,
+                                  job_.pieces[other->piece].id)
+                    : fmt::format("{}: its contour is off by {:.3f} mm", piece.id, miss));
+    }
+
+    void measure(const FoundPiece& found) {
+        const Piece& piece = job_.pieces[found.piece];
+        std::vector<BurntSegment> marks = read_[found.read].reading.rest;
+        for (BurntSegment& mark : marks) {
+            mark.from = found.registration.motion.apply(mark.from);
+            mark.to = found.registration.motion.apply(mark.to);
+        }
+        const MeasuredPiece measured = measure_piece(piece, found.registration.contour, marks);
+        check_ticks(piece, measured);
         const std::vector<WalkedCell> cells = walk_cells(job_.quads, *strips_.at(piece.strip));
-        for (std::size_t i = 0; i + 1 < left.size(); ++i) {
-            const auto at = (static_cast<std::size_t>(piece.first_cell) + i) % cells.size();
-            const WalkedCell& cell = cells[at];
-            compare((left[i] - right[i]).norm(), cell.l0, cell.r0);
-            compare((left[i + 1] - right[i + 1]).norm(), cell.l1, cell.r1);
-            compare((left[i + 1] - left[i]).norm(), cell.l0, cell.l1);
-            compare((right[i + 1] - right[i]).norm(), cell.r0, cell.r1);
+        for (std::size_t i = 0; i < measured.cells.size(); ++i) {
+            const WalkedCell& cell = cells[(index(piece.first_cell) + i) % cells.size()];
+            const CellLengths& lengths = measured.cells[i];
+            const bool rises = piece.fold_rises[i] != 0;
+            if (i == 0) {
+                lengths_.push_back({cell.l0, cell.r0, lengths.first_rung, piece.family});
+            }
+            lengths_.push_back({cell.l1, cell.r1, lengths.last_rung, piece.family});
+            lengths_.push_back({cell.l0, cell.l1, lengths.left, piece.family});
+            lengths_.push_back({cell.r0, cell.r1, lengths.right, piece.family});
+            lengths_.push_back(
+                {rises ? cell.r0 : cell.l0, rises ? cell.l1 : cell.r1, lengths.fold, piece.family});
         }
     }
 
-    void compare(double rebuilt_mm, int from, int to) {
-        const auto at = [&](int vertex) -> const Eigen::Vector3d& {
-            return job_.quads.vertices[static_cast<std::size_t>(vertex)];
-        };
-        note(std::abs(rebuilt_mm - (at(from) - at(to)).norm()));
+    void check_ticks(const Piece& piece, const MeasuredPiece& measured) {
+        certificate_.ticks += measured.ticks;
+        certificate_.largest_tick_error_mm =
+            std::max(certificate_.largest_tick_error_mm, measured.largest_tick_miss_mm);
+        if (measured.largest_tick_miss_mm > kLargestTickMm) {
+            fault(fmt::format("{}: a tick is off by {:.3f} mm", piece.id,
+                              measured.largest_tick_miss_mm));
+        }
+        certificate_.ticks_missing += measured.ticks_missing;
+        if (measured.ticks_missing > 0) {
+            fault(fmt::format("{}: {} ticks are missing", piece.id, measured.ticks_missing));
+        }
     }
 
-    void note(double deviation_mm) {
-        ++certificate_.edges_compared;
-        certificate_.largest_deviation_mm =
-            std::max(certificate_.largest_deviation_mm, deviation_mm);
-        certificate_.largest_deviation_relative = certificate_.largest_deviation_mm / mean_edge_mm_;
+    void weave() {
+        const std::vector<Vector3d>& plan = job_.quads.vertices;
+        for (const MeasuredLength& length : lengths_) {
+            const double planned = (plan[index(length.from)] - plan[index(length.to)]).norm();
+            certificate_.largest_length_error_mm =
+                std::max(certificate_.largest_length_error_mm, std::abs(length.mm - planned));
+        }
+        certificate_.edges_compared = static_cast<int>(lengths_.size());
+        certificate_.largest_disagreement_mm = largest_disagreement_mm(lengths_);
+        const std::vector<Vector3d> woven = weave_virtually(job_.quads, lengths_, context_);
+        for (std::size_t i = 0; i < plan.size(); ++i) {
+            certificate_.largest_deviation_mm =
+                std::max(certificate_.largest_deviation_mm, (woven[i] - plan[i]).norm());
+        }
+    }
+
+    void conclude() {
+        Certificate& result = certificate_;
+        const bool whole = result.missing == 0 && result.diagonal_mm > 0.0;
+        result.largest_deviation_relative =
+            whole ? result.largest_deviation_mm / result.diagonal_mm : 1.0;
+        if (whole && result.largest_deviation_relative > kLargestDeviation) {
+            fault(fmt::format("the surface comes out {:.2g} of its diagonal off",
+                              result.largest_deviation_relative));
+        }
+        const bool ids = result.matched_by_id > 0;
+        const bool shapes = result.matched_by_shape > 0;
+        result.matched_by = ids      ? (shapes ? "ids and shapes" : "ids")
+                            : shapes ? "shapes"
+                                     : "nothing";
+        result.holds = faults_.empty();
+        const std::size_t told = std::min(faults_.size(), kMostFaults);
+        result.faults.assign(faults_.begin(), faults_.begin() + static_cast<std::ptrdiff_t>(told));
+        if (told < faults_.size()) {
+            result.faults.push_back(fmt::format("and {} more", faults_.size() - told));
+        }
     }
 
     const JobResult& job_;
-    double mean_edge_mm_;
-    std::map<std::string, const Strip*> strips_;
-    std::map<std::string, const Piece*> pieces_;
+    const geometry::Context& context_;
+    PieceFinder finder_;
+    std::map<std::string_view, const Strip*> strips_;
+    std::vector<ReadPiece> read_;
+    std::vector<std::size_t> nameless_;
+    std::vector<std::optional<FoundPiece>> found_;  // Per piece.
+    std::vector<MeasuredLength> lengths_;
+    std::vector<std::string> faults_;
+    int stray_lines_ = 0;
     Certificate certificate_;
 };
 
 }  // namespace
 
-Certificate certify(const JobResult& job, std::span<const std::string> gcode) {
-    Certifier certifier(job);
-    for (std::size_t i = 0; i < job.layout.sheets.size(); ++i) {
-        certifier.add_sheet(job.layout.sheets[i], gcode[i]);
+Certificate certify(const JobResult& job,
+                    std::span<const std::string> gcode,
+                    const geometry::Context& context) {
+    Certifier certifier(job, context);
+    for (const std::string& program : gcode) {
+        certifier.add_program(program);
     }
     return certifier.result();
 }

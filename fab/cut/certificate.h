@@ -1,16 +1,18 @@
-// How truly the cut pieces give the surface back, measured on the G-code itself.
+// The closed loop: how truly what is cut gives the planned surface back, by the G-code itself.
 //
-// The program of each sheet is read back; its burns are chained to contours. Each placed piece
-// finds its contour, which is moved back into the piece's frame and shrunk by half the kerf. There
-// every rung end looks up the nearest burnt point; by how far that misses the planned one, the
-// exactly unfolded rung end is moved. Between the rung ends so rebuilt, every edge of the piece's
-// cells is measured and held against the same edge of the quad mesh in space; the largest
-// difference over the mean edge of the mesh is the relative deviation.
+// From the programs of the sheets alone (no layout, no drawing): outlines and marks are read
+// (sheet_reader.h), the ids engraved on them are read (text_reader.h) and name the pieces. Each
+// contour, half the kerf taken off, is laid onto its piece's outline by a rigid motion
+// (registration.h); rung ends are found on it with the help of its ticks, and the lengths between
+// them measured (piece_measure.h). All lengths of all strips together are woven in the computer
+// (virtual_weave.h), and the surface that comes out is held against the quad mesh.
 //
-// So what counts is everything between mesh and beam: unfolding, placement, kerf offset, rounding
-// of numbers, notches narrower than the kerf (the beam leaves them filled), pieces left out (they
-// deviate by 1). Clearance and crimp are allowances and cancel out. A slip along a straight side is
-// seen at its ends only.
+// Pieces whose id is not there or can't be read are found by their shape among those that nobody
+// claims; `matched_by` tells. Congruent pieces can't be told apart by shape and need not be.
+//
+// What is taken from the plan: the quad mesh and its strips, which cells a piece has, where on the
+// outline its rungs are to be looked for, and how much of a length is allowance for thickness and
+// clearance.
 
 #pragma once
 
@@ -18,11 +20,14 @@
 #include <string>
 
 #include "fab/job_result.h"
+#include "geometry/context.h"
 
 namespace leafcutter::fab {
 
-// `gcode` holds the program of each sheet of job.layout, in the same order; job.certificate is not
-// read.
-Certificate certify(const JobResult& job, std::span<const std::string> gcode);
+// `gcode` holds the programs of all sheets, in any order; of `job`, layout, programs and
+// certificate are not read. Throws geometry::Error(BadFile) for G-code that is not ours.
+Certificate certify(const JobResult& job,
+                    std::span<const std::string> gcode,
+                    const geometry::Context& context = {});
 
 }  // namespace leafcutter::fab
