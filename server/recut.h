@@ -22,10 +22,10 @@ struct PackageSource {
 
 struct RecutWishes {
     std::vector<std::string> pieces;  // "W12.1", a whole strip "W12", "sheet:3", or "all".
-    std::optional<fab::SheetSize> sheet;
-    fab::Ring remnant;     // Outline; empty: none.
-    std::string material;  // Id; empty: those of the package.
-    double time_s = 0.5;   // At most, of the time the package took to nest.
+    std::optional<fab::SheetSize> sheet = {};
+    fab::Ring remnant = {};     // Outline; empty: none.
+    std::string material = {};  // Id; empty: those of the package.
+    double time_s = 0.5;        // At most, of the time the package took to nest.
 };
 
 // `materials` may replace those that the package was made of. What comes is a package of its own:
