@@ -121,17 +121,23 @@ private:
     }
 
     json joint_json(const AssemblyMove& move) const {
-        const Piece& onto = job_.pieces[pieces_.at(move.onto)];
-        const auto strip = std::find_if(job_.strips.begin(), job_.strips.end(),
-                                        [&](const Strip& s) { return s.id == onto.strip; });
         return {{"kind", move.kind == MoveKind::Close ? "close" : "join"},
                 {"region", move.region},
                 {"strip", job_.strips[static_cast<std::size_t>(move.strip)].id},
                 {"piece", move.piece},
                 {"onto", move.onto},
+                {"end", move.at_start ? "start" : "end"},
                 {"where", move.in_place ? "in-place" : "table"},
-                {"quad", strip->quads[static_cast<std::size_t>(onto.first_cell)]},
+                {"crossing", quad_at(move)},
                 {"tucked", move.tucked}};
+    }
+
+    // The last cell of the piece on the side where it is joined.
+    int quad_at(const AssemblyMove& move) const {
+        const Piece& piece = job_.pieces[pieces_.at(move.piece)];
+        const std::vector<int>& quads = job_.strips[static_cast<std::size_t>(move.strip)].quads;
+        const int cell = piece.first_cell + (move.at_start ? 0 : piece.cell_count - 1);
+        return quads[static_cast<std::size_t>(cell) % quads.size()];
     }
 
     const JobResult& job_;

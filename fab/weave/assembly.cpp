@@ -153,6 +153,7 @@ public:
             weave_region(i, members[i]);
         }
         join_strips();
+        glue_rims();
         return std::move(plan_);
     }
 
@@ -312,6 +313,34 @@ private:
         std::sort(order.begin(), order.end());
         for (const auto& [later, earlier, joint] : order) {
             add_joint(joint, MoveKind::Join, JointState::InPlace);
+        }
+    }
+
+    // Ends that are glued to a cylinder beside theirs: rim after rim, region after region.
+    void glue_rims() {
+        std::vector<std::tuple<int, bool, int>> order;  // Region, end of a strip, strip.
+        for (std::size_t i = 0; i < strips_.size(); ++i) {
+            const int strip = static_cast<int>(i);
+            for (const bool end : {false, true}) {
+                if ((end ? strips_[i].glued_end : strips_[i].glued_start).has_tab) {
+                    order.emplace_back(region_[i], end, strip);
+                }
+            }
+        }
+        std::sort(order.begin(), order.end());
+        for (const auto& [region, end, strip] : order) {
+            const std::vector<int>& own = own_[at(strip)];
+            const Piece& piece = pieces_[at(end ? own.back() : own.front())];
+            AssemblyMove move;
+            move.kind = MoveKind::Join;
+            move.region = region;
+            move.strip = strip;
+            move.piece = piece.id;
+            move.onto = (end ? piece.end_tab : piece.start_tab).onto;
+            move.at_start = !end;
+            move.in_place = true;
+            plan_.moves.push_back(std::move(move));
+            ++plan_.place_joints;
         }
     }
 

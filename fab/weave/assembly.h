@@ -35,7 +35,7 @@ enum class MoveKind {
     Lay,     // Pieces are laid over and under what is there; all of that is folded back first.
     Thread,  // The same, but at the `held` cells they are pushed through lengthwise.
     Close,   // The last joint of a closed strip: it becomes a ring.
-    Join,    // Any other joint: of two pieces of a strip, or of a strip with the next one.
+    Join,    // Any other joint: of two pieces of a strip, of a strip with the next one or a rim.
 };
 
 struct AssemblyMove {
@@ -51,7 +51,9 @@ struct AssemblyMove {
 
     // Close, Join:
     std::string piece;      // Its end is joined
-    std::string onto;       // to the start of this one.
+    std::string onto;       // to the start of this one. Where cylinders are only glued to each
+                            // other (GluedEnd): to this one's rim; empty: to several.
+    bool at_start = false;  // Glued only: the start of `piece` is joined, not its end.
     bool in_place = false;  // Else on the table, before either piece is laid.
     int tucked = 0;         // Crossing strips under which the tab has to be pushed.
 };

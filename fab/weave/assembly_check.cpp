@@ -86,6 +86,11 @@ public:
                 return fmt::format("{} is never joined to {}", id(joint.first), id(joint.second));
             }
         }
+        for (const auto& [rim, made] : rims_) {
+            if (!made) {
+                return fmt::format("{} is never glued to a rim", id(rim.first));
+            }
+        }
         return {};
     }
 
@@ -114,6 +119,12 @@ private:
                 if (onto != nullptr) {
                     joints_[{numbers_.at(strip.pieces[i]), numbers_.at(*onto)}] = false;
                 }
+            }
+            if (strip.glued_start.has_tab) {
+                rims_[{numbers_.at(strip.pieces.front()), 0}] = false;
+            }
+            if (strip.glued_end.has_tab) {
+                rims_[{numbers_.at(strip.pieces.back()), 1}] = false;
             }
         }
     }
@@ -228,11 +239,33 @@ private:
         return count;
     }
 
+    std::string glue(const AssemblyMove& move, Held& piece, bool& made) const {
+        const auto onto = numbers_.find(move.onto);
+        const bool lies =
+            move.onto.empty() || (onto != numbers_.end() && pieces_[at(onto->second)].lies);
+        if (!piece.lies || !lies || !move.in_place || move.kind != MoveKind::Join) {
+            return "a rim is glued where both sides lie";
+        }
+        if (made) {
+            return move.piece + " is glued already";
+        }
+        made = true;
+        piece.end[move.at_start ? 0 : 1] = End::InPlace;
+        return {};
+    }
+
     std::string join(const AssemblyMove& move) {
         const auto first = numbers_.find(move.piece);
         const auto second = numbers_.find(move.onto);
-        if (first == numbers_.end() || second == numbers_.end()) {
-            return "there is no such piece";
+        if (first == numbers_.end()) {
+            return "there is no piece " + move.piece;
+        }
+        const auto rim = rims_.find({first->second, move.at_start ? 0 : 1});
+        if (rim != rims_.end()) {
+            return glue(move, pieces_[at(first->second)], rim->second);
+        }
+        if (second == numbers_.end() || move.at_start) {
+            return "there is no piece for it to be joined to";
         }
         const auto joint = joints_.find({first->second, second->second});
         if (joint == joints_.end() || joint->second) {
@@ -272,6 +305,7 @@ private:
     std::vector<Held> pieces_;
     std::unordered_map<std::string, int> numbers_;
     std::map<std::pair<int, int>, bool> joints_;  // End of the one, start of the other: made.
+    std::map<std::pair<int, int>, bool> rims_;    // Piece; its start or its end: glued.
 };
 
 }  // namespace

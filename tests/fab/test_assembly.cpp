@@ -5,8 +5,8 @@
 
 #include "fab/weave/assembly.h"
 #include "geometry/foliation.h"
-#include "geometry/surface_measures.h"
 #include "geometry/samples.h"
+#include "geometry/surface_measures.h"
 #include "tests/geometry/surfaces.h"
 #include "tests/support/cut_strips.h"
 #include "tests/support/quad_grids.h"
@@ -38,14 +38,18 @@ struct Job {
     }
 };
 
-Job plan(const geometry::QuadMesh& mesh, const Weave& weave, const Cutting& cutting = {}) {
+Job plan(const geometry::QuadMesh& mesh, const Weave& weave, test::CutStrips cut) {
     Job job;
-    job.cut = test::cut_strips(mesh, cutting);
+    job.cut = std::move(cut);
     job.crossings = crossings_of(job.cut.strips, weave);
     job.assembly = plan_assembly(mesh, job.cut.strips, job.cut.pieces, job.crossings);
     const auto fault = job.fault();
     EXPECT_FALSE(fault) << "move " << fault->move << ": " << fault->what;
     return job;
+}
+
+Job plan(const geometry::QuadMesh& mesh, const Weave& weave, const Cutting& cutting) {
+    return plan(mesh, weave, test::cut_strips(mesh, cutting));
 }
 
 Job plan(const geometry::QuadMesh& mesh,
@@ -163,12 +167,12 @@ TEST(PlanAssembly, MakesEveryMovePossibleOnSamples) {
                               Case{"sphere", FoliationMode::Annulus}}) {
         const auto mesh = sample_grid(shape.name, 500.0, shape.mode);
         for (const WeavePattern pattern : kPatterns) {
-            for (const ColumnRuns columns : {ColumnRuns::PerCylinder, ColumnRuns::Through}) {
+            for (const bool through : {false, true}) {
                 SCOPED_TRACE(shape.name);
                 const Job job = plan(mesh, pattern,
                                      {.most_cells = 11,
                                       .opening = [](int strip) { return 7 * strip; },
-                                      .columns = columns});
+                                      .through = through});
                 EXPECT_EQ(job.assembly.laid + job.assembly.threaded,
                           std::count_if(job.assembly.moves.begin(), job.assembly.moves.end(),
                                         [](const AssemblyMove& m) { return !m.pieces.empty(); }));
@@ -212,8 +216,7 @@ TEST(PlanAssembly, JoinsRegionsLast) {
 
 TEST(PlanAssembly, GrowsOnlyWhereSomethingLies) {
     for (const char* name : {"eight", "hand"}) {
-        const Job job =
-            plan(sample_grid(name, 500.0), WeavePattern::Plain, {.columns = ColumnRuns::Through});
+        const Job job = plan(sample_grid(name, 500.0), WeavePattern::Plain, {.through = true});
         std::vector<char> lies(job.cut.strips.size(), 0);
         int begun = -1;
         for (const AssemblyMove& move : job.assembly.moves) {
@@ -249,6 +252,22 @@ TEST(PlanAssembly, FindsAWayForAnyMatrixAndAnyJoints) {
               .opening = [&](int) { return static_cast<int>(random() % 100); },
               .tab_mm = 1.5});
     }
+}
+
+TEST(PlanAssembly, GluesEveryRimOnceAfterAllElse) {
+    const auto mesh = test::flat_grid({3, 4}, 10.0);
+    test::CutStrips cut = test::cut_strips(mesh);
+    for (Strip& strip : cut.strips) {
+        strip.glued_end.has_tab = strip.family == Family::Warp;
+        strip.glued_start.has_tab = strip.id == "P2";
+    }
+    Job job = plan(mesh, weave_cells(mesh, {}), std::move(cut));
+    ASSERT_EQ(job.assembly.moves.size(), 7U + 5U);
+    EXPECT_EQ(job.assembly.place_joints, 5);
+    EXPECT_EQ(job.assembly.moves[7].piece, "P2.1");
+    EXPECT_TRUE(job.assembly.moves[7].at_start);
+    job.assembly.moves.pop_back();
+    EXPECT_TRUE(job.fault());
 }
 
 class CheckAssembly : public ::testing::Test {

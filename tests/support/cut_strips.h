@@ -8,7 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "fab/strips/strips.h"
+#include "fab/strips/strip.h"
+#include "geometry/quads/threads.h"
 
 namespace leafcutter::test {
 
@@ -16,9 +17,9 @@ struct Cutting {
     int most_cells = 1 << 20;  // Of a piece.
     std::function<int(int strip)> opening = [](int) {
         return 0;
-    };                    // Cell that closed ones begin at.
-    double tab_mm = 0.5;  // A cell is 1 mm long.
-    fab::ColumnRuns columns = fab::ColumnRuns::PerCylinder;
+    };                     // Cell that closed ones begin at.
+    double tab_mm = 0.5;   // A cell is 1 mm long.
+    bool through = false;  // Warp strips go on through critical leaves, however far.
 };
 
 struct CutStrips {
@@ -26,9 +27,34 @@ struct CutStrips {
     std::vector<fab::Piece> pieces;
 };
 
+inline std::vector<fab::Strip> whole_strips(const geometry::QuadMesh& mesh, bool through) {
+    std::vector<fab::Strip> strips;
+    for (const fab::Family family : {fab::Family::Weft, fab::Family::Warp}) {
+        const auto threads = geometry::trace_threads(
+            mesh, family,
+            through ? geometry::ThreadEnds::Through : geometry::ThreadEnds::AtCriticalLeaves);
+        const char letter = family == fab::Family::Weft ? 'W' : 'P';
+        for (std::size_t i = 0; i < threads.size(); ++i) {
+            fab::Strip strip;
+            strip.id = fmt::format("{}{}", letter, i + 1);
+            strip.family = family;
+            strip.closed = threads[i].closed;
+            strip.quads = threads[i].quads;
+            const auto next = std::find_if(threads.begin(), threads.end(), [&](const auto& t) {
+                return t.quads.front() == threads[i].next;
+            });
+            if (threads[i].next >= 0 && next != threads.end()) {
+                strip.next = fmt::format("{}{}", letter, next - threads.begin() + 1);
+            }
+            strips.push_back(std::move(strip));
+        }
+    }
+    return strips;
+}
+
 inline CutStrips cut_strips(const geometry::QuadMesh& mesh, const Cutting& cutting = {}) {
     CutStrips result;
-    result.strips = fab::make_strips(mesh, cutting.columns);
+    result.strips = whole_strips(mesh, cutting.through);
     for (std::size_t i = 0; i < result.strips.size(); ++i) {
         fab::Strip& strip = result.strips[i];
         const int count = static_cast<int>(strip.quads.size());
