@@ -23,6 +23,7 @@
 #include "server/params.h"
 #include "server/recut.h"
 #include "server/recut_wishes.h"
+#include "server/zip_reader.h"
 
 namespace leafcutter::server {
 
@@ -46,8 +47,13 @@ std::string read_text(const std::string& path) {
 
 PackageSource source_of(const std::string& package) {
     std::error_code failure;
+    if (std::filesystem::is_regular_file(package, failure)) {
+        const auto archive = std::make_shared<ZipReader>(read_text(package), package);
+        return {package, [archive](const std::string& path) { return archive->read(path); }};
+    }
     if (!std::filesystem::is_directory(package, failure)) {
-        throw UsageError(fmt::format("{}: is no directory of a package", package));
+        throw UsageError(
+            fmt::format("{}: is neither a package's directory nor its archive", package));
     }
     return {package, [package](const std::string& path) {
                 return read_text((std::filesystem::path(package) / path).string());
@@ -92,7 +98,7 @@ std::string output_of(const RecutArguments& arguments) {
         return arguments.output;
     }
     std::filesystem::path package = std::filesystem::weakly_canonical(arguments.package);
-    return package.parent_path() / (package.filename().string() + "-recut");
+    return package.parent_path() / (package.stem().string() + "-recut");
 }
 
 double steady_seconds() {
@@ -131,7 +137,8 @@ void add_recut_command(CLI::App& app, const CommonOptions& common) {
     CLI::App* command =
         app.add_subcommand("recut", "Sheets for single pieces of a finished package again");
     const auto arguments = std::make_shared<RecutArguments>();  // Lives as long as the callback.
-    command->add_option("package", arguments->package, "Directory of a package")->required();
+    command->add_option("package", arguments->package, "A package: its directory or .zip")
+        ->required();
     command
         ->add_option("pieces", arguments->wishes.pieces,
                      "A piece (W12.1), a whole strip (W12), a sheet (sheet:3), or all")

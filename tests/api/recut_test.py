@@ -5,6 +5,7 @@ import json
 import subprocess
 import tempfile
 import unittest
+import zipfile
 from pathlib import Path
 
 from cuts_test import PARAMS, PLATE, Served
@@ -78,6 +79,20 @@ class CommandLine(unittest.TestCase):
                          {f"sheet-00{n}.{kind}" for n in (1, 2) for kind in ("svg", "dxf", "gcode")})
         self.assertIn("W1.1", (out / "recut.html").read_text())
         self.assertEqual(run("audit", out)[0], 0)
+
+    def test_reads_archives_and_refuses_broken_ones(self):
+        archive = self.root / "plate.zip"
+        with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
+            for name in ("report.json", "strips.json", "layout.json"):
+                packed.write(self.root / "plate" / name, f"plate/{name}")
+        self.assertEqual(run("recut", archive, "W1.1", "-o", self.root / "unzipped")[0], 0)
+        whole = outlines(self.read("plate/strips.json"))
+        self.assertEqual(outlines(self.read("unzipped/strips.json")), {"W1.1": whole["W1.1"]})
+        content = archive.read_bytes()
+        for damaged in (content[:-40], content[:500] + b"x" * 800 + content[1300:], b"PK"):
+            archive.write_bytes(damaged)
+            status, _, error = run("recut", archive, "all", "-o", self.root / "no")
+            self.assertEqual((status, error.count("\n")), (2, 1))
 
     def test_recuts_onto_a_remnant(self):
         (self.root / "remnant.json").write_text("[[0, 0], [200, 0], [0, 200]]")
@@ -153,8 +168,12 @@ class Api(Served):
             "program_sha256": job["sheets"][0]["program_sha256"], "bed_clear": True})
         self.assertIn(status, (200, 202), cut)
         self.wait(f"/cuts/{cut['id']}", lambda cut: cut["state"] == "done", seconds=60.0)
-        status, _, zipped = self.ask("GET", f"/jobs/{job['id']}/package.zip")
-        self.assertEqual(status, 200)
+        # What the daemon hands out, the command line can cut again.
+        archive = Path(self.folder.name) / "pieces.zip"
+        archive.write_bytes(self.ask("GET", f"/jobs/{job['id']}/package.zip")[2])
+        out = Path(self.folder.name) / "pieces"
+        self.assertEqual(run("recut", archive, "P1.1", "-o", out), (0, "", ""))
+        self.assertEqual(outlines(json.loads((out / "strips.json").read_text())), {"P1.1": pieces["P1.1"]})
 
     def test_recut_refuses_what_cannot_be(self):
         path = f"/jobs/{self.job['id']}/recut"
