@@ -104,8 +104,8 @@ public:
         };
         result_.weft = material(params.material.weft, "material.weft");
         result_.warp = material(params.material.warp, "material.warp");
-        usable_sheet(result_.weft, params.nesting);
-        usable_sheet(result_.warp, params.nesting);
+        piece_room(result_.weft, params.nesting);
+        piece_room(result_.warp, params.nesting);
     }
 
     PackageSummary run(const PipelineInput& input) {
@@ -282,11 +282,12 @@ private:
 
     PieceLimits limits_of(const Material& material) const {
         PieceLimits limits;
-        limits.usable_sheet = usable_sheet(material, result_.params.nesting);
+        const PieceRoom room = piece_room(material, result_.params.nesting);
+        limits.usable_sheet = room.size;
         limits.thickness_mm = material.thickness_mm;
         limits.min_width_mm = material.min_strip_width_mm;
         limits.min_length_mm = material.min_length_mm;
-        limits.rotation = result_.params.nesting.rotation;
+        limits.rotation = room.rotation;
         limits.self_gap_mm = material.kerf_mm + kSelfGapMm;
         limits.kerf_mm = material.kerf_mm;
         limits.min_radius_mm = material.min_radius_mm;

@@ -178,10 +178,6 @@ PieceRoom piece_room(const Material& material, const NestingParams& params) {
     return room;
 }
 
-SheetSize usable_sheet(const Material& material, const NestingParams& params) {
-    return piece_room(material, params).size;
-}
-
 std::vector<double> turns_on(const Material& material, Rotation rotation) {
     if (!material.grain_deg) {
         return allowed_rotations(rotation);

@@ -29,8 +29,6 @@ struct PieceRoom {
 // Throws Error(BadOption) if nothing is left of it or the material has no sheets.
 PieceRoom piece_room(const Material& material, const NestingParams& params);
 
-SheetSize usable_sheet(const Material& material, const NestingParams& params);
-
 // The rotations that `material` leaves of those asked for; empty: any. The search knows single
 // rotations only, so a tolerance around the grain becomes some of them.
 std::vector<double> turns_on(const Material& material, Rotation rotation);
