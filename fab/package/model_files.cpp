@@ -99,7 +99,13 @@ json thickness_record(const JobResult& job) {
 
 json woven_record(const JobResult& job) {
     const WovenModel& model = job.woven;
-    json record = {{"overlaps", model.overlaps}, {"side_overlaps", model.side_overlaps}};
+    json record = {{"overlaps", model.overlaps},
+                   {"side_overlaps", model.side_overlaps},
+                   {"tight_crossings", model.tight_crossings},
+                   {"tight_sides", model.tight_sides},
+                   {"lacking_mm", model.lacking_mm},
+                   {"narrowed_cells", model.narrowed_cells},
+                   {"narrowed_mm", model.narrowed_mm}};
     if (model.smallest_gap_mm) {
         record["smallest_gap_mm"] = *model.smallest_gap_mm;
     }

@@ -283,12 +283,11 @@ std::vector<std::string> thickness_warnings(const ThicknessReport& report,
                             named(strips, short_of_room), family.flat_gap_mm));
         }
     }
-    if (passes && model.overlaps > 0) {
-        warnings.push_back(
-            fmt::format("at {} crossings the gap between strips is narrower than what must pass: "
-                        "up to {:.2g} mm are lacking; wider strips or a larger fit.clearance_mm "
-                        "help",
-                        model.overlaps, -model.smallest_gap_mm.value_or(0.0)));
+    if (passes && model.tight_crossings > 0) {
+        warnings.push_back(fmt::format(
+            "at {} crossings there is less room than thickness needs, by up to {:.2g} mm: expect "
+            "strips to push each other aside there",
+            model.tight_crossings, model.lacking_mm));
     }
     return warnings;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -229,7 +230,7 @@ public:
         }
     }
 
-    void finish() {
+    std::vector<Clash> finish() {
         const auto told = [](double gap) {
             return std::isfinite(gap) ? std::optional<double>(gap) : std::nullopt;
         };
@@ -237,6 +238,11 @@ public:
         model_.smallest_side_gap_mm = told(side_gap_);
         model_.overlaps = static_cast<int>(crossing_overlaps_.size());
         model_.side_overlaps = static_cast<int>(side_overlaps_.size());
+        std::vector<Clash> clashes;
+        for (const auto& [place, depth] : depths_) {
+            clashes.push_back({place.first, place.second, depth});
+        }
+        return clashes;
     }
 
 private:
@@ -263,6 +269,10 @@ private:
         if (gap < -kOverlapMm) {
             const Prism& counted = one.family == Family::Weft ? one : two;
             (crossing ? crossing_overlaps_ : side_overlaps_).insert({counted.strip, counted.cell});
+            for (const Prism* prism : {&one, &two}) {
+                double& depth = depths_[{prism->strip, prism->cell}];
+                depth = std::max(depth, -gap);
+            }
         }
     }
 
@@ -272,6 +282,7 @@ private:
     double side_gap_ = std::numeric_limits<double>::infinity();
     std::set<std::pair<int, int>> crossing_overlaps_;
     std::set<std::pair<int, int>> side_overlaps_;
+    std::map<std::pair<int, int>, double> depths_;  // Per strip and cell.
 };
 
 double mean_size(std::span<const Prism> prisms) {
@@ -284,9 +295,9 @@ double mean_size(std::span<const Prism> prisms) {
 
 }  // namespace
 
-void measure_gaps(std::span<const Strip> strips,
-                  WovenModel& model,
-                  const geometry::Context& context) {
+std::vector<Clash> measure_gaps(std::span<const Strip> strips,
+                                WovenModel& model,
+                                const geometry::Context& context) {
     std::vector<Prism> prisms = prisms_of(strips, model);
     // Neighbours that don't touch are to be found too: boxes reach out as far as strips are thick.
     double reach = 0.0;
@@ -308,7 +319,7 @@ void measure_gaps(std::span<const Strip> strips,
             gauge.compare(grid, grid.cells()[i]);
         }
     }
-    gauge.finish();
+    return gauge.finish();
 }
 
 }  // namespace leafcutter::fab

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "fab/strips/strip.h"
 #include "fab/weave/woven_model.h"
@@ -10,13 +11,20 @@
 
 namespace leafcutter::fab {
 
-// Sets the gaps and overlaps of `model`. Every slab is taken apart into convex prisms, two between
-// one rung and the next; two prisms are apart by the largest distance that any separating plane
-// shows, and lie in each other by the smallest way out (separating axes: all faces and all pairs of
-// edges). A strip is compared with itself too where it comes back beside itself. Expected
-// O(prisms).
-void measure_gaps(std::span<const Strip> strips,
-                  WovenModel& model,
-                  const geometry::Context& context = {});
+// A cell of a strip in which it lies in another strip.
+struct Clash {
+    int strip = 0;
+    int cell = 0;
+    double depth_mm = 0.0;
+};
+
+// Sets the gaps and overlaps of `model`; returns where strips lie in each other, both of them.
+// Every slab is taken apart into convex prisms, two between one rung and the next; two prisms are
+// apart by the largest distance that any separating plane shows, and lie in each other by the
+// smallest way out (separating axes: all faces and all pairs of edges). A strip is compared with
+// itself too where it comes back beside itself. Expected O(prisms).
+std::vector<Clash> measure_gaps(std::span<const Strip> strips,
+                                WovenModel& model,
+                                const geometry::Context& context = {});
 
 }  // namespace leafcutter::fab

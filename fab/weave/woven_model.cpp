@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -22,6 +24,9 @@ constexpr double kLongestUp = 3.0;
 
 // Every arc of a climb gets a point in its middle as long as the model has no more cells than this.
 constexpr std::size_t kMostFineCells = 6500;
+
+// Rounds of drawing strips narrower, by more each time.
+constexpr int kMostRounds = 6;
 
 // A point of the way from one crossing to the next: how far along, how far of the climb, how steep.
 struct WayPoint {
@@ -214,6 +219,83 @@ private:
     WovenStrip result_;
 };
 
+std::vector<WovenStrip> build_strips(const geometry::QuadMesh& mesh,
+                                     std::span<const Strip> strips,
+                                     std::span<const NarrowedStrip> narrowed,
+                                     const Crossings& crossings,
+                                     const WovenRules& rules) {
+    const std::vector<CrossingArea> areas = crossing_areas(mesh, strips, narrowed);
+    const double climb = (rules.thickness_mm[0] + rules.thickness_mm[1]) / 2.0;
+    std::vector<WovenStrip> woven;
+    woven.reserve(strips.size());
+    for (std::size_t i = 0; i < strips.size(); ++i) {
+        const double thickness = rules.thickness_mm[strips[i].family == Family::Weft ? 0 : 1];
+        StripBuilder builder({mesh, strips[i], narrowed[i], areas, crossings[i]}, thickness, climb);
+        woven.push_back(builder.run());
+        woven.back().strip = static_cast<int>(i);
+    }
+    return woven;
+}
+
+// Draws strips narrower where they lie in each other, and notes how much.
+class Thinning {
+public:
+    Thinning(const geometry::QuadMesh& mesh,
+             std::span<const Strip> strips,
+             std::vector<NarrowedStrip>& narrowed)
+        : mesh_(mesh), strips_(strips), narrowed_(narrowed) {}
+
+    void thin(std::span<const Clash> clashes, double growth) {
+        for (const Clash& clash : clashes) {
+            const auto strip = static_cast<std::size_t>(clash.strip);
+            const auto cell = static_cast<std::size_t>(clash.cell);
+            const double side = growth * (clash.depth_mm + kSlackMm);
+            const std::size_t count = strips_[strip].quads.size();
+            thin_rung(strip, cell, cell, side);
+            thin_rung(strip, cell + 1, cell, side);
+            if (strips_[strip].closed && (cell == 0 || cell + 1 == count)) {
+                NarrowedStrip& n = narrowed_[strip];
+                n.left[0] = n.left[count] = std::max(n.left[0], n.left[count]);
+                n.right[0] = n.right[count] = std::max(n.right[0], n.right[count]);
+            }
+            cells_.insert({clash.strip, clash.cell});
+        }
+    }
+
+    int cells() const { return static_cast<int>(cells_.size()); }
+    double most_mm() const { return most_mm_; }
+
+private:
+    // A rung before or behind `cell`.
+    void thin_rung(std::size_t strip, std::size_t rung, std::size_t cell, double side_mm) {
+        NarrowedStrip& n = narrowed_[strip];
+        const auto& quad = mesh_.quads[static_cast<std::size_t>(strips_[strip].quads[cell])];
+        const CellCorners& c = n.cells[cell];
+        const auto at = [&](std::size_t corner) -> const Vector3d& {
+            return mesh_.vertices[static_cast<std::size_t>(quad[corner])];
+        };
+        const double width =
+            rung == cell ? (at(c.l0) - at(c.r0)).norm() : (at(c.l1) - at(c.r1)).norm();
+        if (width <= 0.0) {
+            return;
+        }
+        for (double* part : {&n.left[rung], &n.right[rung]}) {
+            const double more = std::min(side_mm / width, std::max(0.0, kMostInset - *part));
+            *part += more;
+            most_mm_ = std::max(most_mm_, more * width);
+        }
+    }
+
+    // Less than half: something of every strip stays.
+    static constexpr double kMostInset = 0.45;
+
+    const geometry::QuadMesh& mesh_;
+    std::span<const Strip> strips_;
+    std::vector<NarrowedStrip>& narrowed_;
+    std::set<std::pair<int, int>> cells_;
+    double most_mm_ = 0.0;
+};
+
 }  // namespace
 
 WovenModel build_woven_model(const geometry::QuadMesh& mesh,
@@ -221,19 +303,27 @@ WovenModel build_woven_model(const geometry::QuadMesh& mesh,
                              const Crossings& crossings,
                              const WovenRules& rules,
                              const geometry::Context& context) {
-    const std::vector<NarrowedStrip> narrowed = narrow_strips(mesh, strips, rules);
-    const std::vector<CrossingArea> areas = crossing_areas(mesh, strips, narrowed);
-    const double climb = (rules.thickness_mm[0] + rules.thickness_mm[1]) / 2.0;
+    std::vector<NarrowedStrip> narrowed = narrow_strips(mesh, strips, rules);
+    Thinning thinning(mesh, strips, narrowed);
     WovenModel model;
-    model.strips.reserve(strips.size());
-    for (std::size_t i = 0; i < strips.size(); ++i) {
-        context.check();
-        const double thickness = rules.thickness_mm[strips[i].family == Family::Weft ? 0 : 1];
-        StripBuilder builder({mesh, strips[i], narrowed[i], areas, crossings[i]}, thickness, climb);
-        model.strips.push_back(builder.run());
-        model.strips.back().strip = static_cast<int>(i);
+    double growth = 1.0;
+    for (int round = 0; round <= kMostRounds; ++round, growth *= 1.5) {
+        model.strips = build_strips(mesh, strips, narrowed, crossings, rules);
+        const std::vector<Clash> clashes = measure_gaps(strips, model, context);
+        if (round == 0) {
+            model.tight_crossings = model.overlaps;
+            model.tight_sides = model.side_overlaps;
+            for (const Clash& clash : clashes) {
+                model.lacking_mm = std::max(model.lacking_mm, clash.depth_mm);
+            }
+        }
+        if (clashes.empty() || round == kMostRounds) {
+            break;
+        }
+        thinning.thin(clashes, growth);
     }
-    measure_gaps(strips, model, context);
+    model.narrowed_cells = thinning.cells();
+    model.narrowed_mm = thinning.most_mm();
     return model;
 }
 

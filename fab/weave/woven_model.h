@@ -4,8 +4,9 @@
 // cross, both are parallel offsets of this surface, half of both thicknesses apart, so that they
 // touch all over and nowhere cut into each other, however much the surface bends. All of the way
 // up and down lies in the gaps that the clearance leaves between crossing strips, on the arcs of
-// thickness.h. Ends of open strips stop half a clearance before the border of their last cell;
-// tabs are not modelled.
+// thickness.h. Where these gaps have no room for it (tiny cells, or cells that meet at a sharp
+// angle), strips are drawn narrower than they are cut, and that is counted. Ends of open strips
+// stop half a clearance before the border of their last cell; tabs are not modelled.
 
 #pragma once
 
@@ -56,6 +57,13 @@ struct WovenModel {
     std::optional<double> smallest_side_gap_mm;
     int overlaps = 0;       // Crossings where two strips are less than -1e-6 mm apart.
     int side_overlaps = 0;  // Cells in which a strip lies in a neighbour of its family.
+
+    // The same for strips as wide as they are cut, before some were drawn narrower.
+    int tight_crossings = 0;
+    int tight_sides = 0;
+    double lacking_mm = 0.0;   // As deep as two of them would lie in each other at most.
+    int narrowed_cells = 0;    // Cells of strips that were drawn narrower,
+    double narrowed_mm = 0.0;  // on either side by this much at most.
 };
 
 struct WovenRules {

@@ -160,11 +160,32 @@ TEST(WovenModel, CountsStripsThatAreTooThickForTheirGaps) {
     WovenRules rules = kPaper;
     rules.thickness_mm = {1.5, 1.5};
     const Woven thick = woven(test::flat_grid({10, 10}, 10.0), rules);
-    EXPECT_GT(thick.model.overlaps, 0);
-    EXPECT_LT(*thick.model.smallest_gap_mm, -1e-3);
+    EXPECT_EQ(thick.model.tight_crossings, 100);
+    EXPECT_GT(thick.model.lacking_mm, 0.5);
+    // Drawn narrower, they pass.
+    EXPECT_GT(thick.model.narrowed_mm, 0.3);
+    expect_no_contact(thick);
 
     rules.clearance_mm = clearance_need({1.5, 0.0}, {1.5, 0.0}).pass_mm;
-    expect_no_contact(woven(test::flat_grid({10, 10}, 10.0), rules));
+    const Woven loose = woven(test::flat_grid({10, 10}, 10.0), rules);
+    expect_no_contact(loose);
+    EXPECT_EQ(loose.model.tight_crossings, 0);
+    EXPECT_EQ(loose.model.narrowed_cells, 0);
+}
+
+TEST(WovenModel, DrawsStripsNarrowerWhereTheSurfaceIsCreased) {
+    // Two walls that meet at an angle of 60 degrees.
+    const QuadMesh mesh = test::quad_grid({8, 8}, ChartShape::Rectangle, [](double g, double f) {
+        const double x = 80.0 * (g - 0.5);
+        return Vector3d(0.5 * x, 80.0 * f, std::abs(x) * std::sqrt(0.75));
+    });
+    const Woven made = woven(mesh);
+    EXPECT_GT(made.model.tight_crossings, 0);
+    EXPECT_LE(made.model.tight_crossings, 16) << "the cells along the crease";
+    EXPECT_EQ(made.model.overlaps, 0);
+    EXPECT_EQ(made.model.side_overlaps, 0);
+    EXPECT_GT(*made.model.smallest_gap_mm, 0.0);
+    EXPECT_LT(made.model.narrowed_mm, 0.5);
 }
 
 TEST(WovenModel, SeesAStripThatLiesInItsNeighbour) {
