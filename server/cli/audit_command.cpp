@@ -51,15 +51,26 @@ std::string read_text_file(const std::string& path) {
     return text;
 }
 
-fab::Material material_of(const fab::Sheet& sheet, const AuditArguments& arguments) {
+// Those that the package was made of; of an older one that doesn't say, the built-in ones.
+std::vector<fab::Material> materials_of(const AuditArguments& arguments) {
+    const auto built_in = fab::built_in_materials();
+    const std::string report = arguments.package + "/report.json";
+    try {
+        return read_facts(read_text_file(report)).materials;
+    } catch (const std::exception&) {
+        return {built_in.begin(), built_in.end()};
+    }
+}
+
+fab::Material material_of(const fab::Sheet& sheet,
+                          const std::vector<fab::Material>& materials,
+                          const AuditArguments& arguments) {
     fab::Material material;
-    if (const fab::Material* found =
-            fab::find_material(fab::built_in_materials(), sheet.material)) {
+    if (const fab::Material* found = fab::find_material(materials, sheet.material)) {
         material = *found;
     } else if (!arguments.kerf_mm) {
-        throw UsageError(
-            fmt::format("sheet {}: {} is no built-in material; say its kerf with --kerf", sheet.id,
-                        sheet.material));
+        throw UsageError(fmt::format("sheet {}: nothing is known of {}; say its kerf with --kerf",
+                                     sheet.id, sheet.material));
     }
     material.id = sheet.material;
     material.kerf_mm = arguments.kerf_mm.value_or(material.kerf_mm);
@@ -69,11 +80,12 @@ fab::Material material_of(const fab::Sheet& sheet, const AuditArguments& argumen
 std::vector<fab::CutProgram> plans_of(const AuditArguments& arguments) {
     const std::vector<fab::Piece> pieces =
         read_pieces(read_text_file(arguments.package + "/strips.json"));
+    const std::vector<fab::Material> materials = materials_of(arguments);
     std::vector<fab::CutProgram> plans;
     for (const fab::Sheet& sheet :
          read_sheets(read_text_file(arguments.package + "/layout.json"))) {
-        plans.push_back(
-            fab::plan_sheet(sheet, pieces, material_of(sheet, arguments), fab::MachineProfile{}));
+        plans.push_back(fab::plan_sheet(sheet, pieces, material_of(sheet, materials, arguments),
+                                        fab::MachineProfile{}));
     }
     return plans;
 }
