@@ -1,11 +1,12 @@
 #include "fab/weave/lay_order.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <tuple>
 #include <utility>
+
+#include "fab/weave/lay_front.h"
 
 namespace leafcutter::fab {
 
@@ -20,152 +21,6 @@ constexpr std::size_t kLooksPerCell = 8;
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
-
-// One cell of a strip that is woven in, and the base strip's there.
-struct Step {
-    int own = 0;         // The cell of what is woven in,
-    int strip = 0;       // the base strip,
-    int cell = 0;        // its cell there,
-    bool under = false;  // and whether what is woven in lies under it.
-};
-
-// The ordered cells from one open joint (or end) of a base strip to the next.
-std::vector<std::vector<int>> segments_of(const Strip& strip, const std::vector<int>& joints) {
-    const int count = static_cast<int>(strip.quads.size());
-    std::vector<int> firsts = joints;
-    if (!strip.closed) {
-        firsts.insert(firsts.begin(), 0);
-        firsts.erase(std::unique(firsts.begin(), firsts.end()), firsts.end());
-    }
-    std::vector<std::vector<int>> segments;
-    for (std::size_t i = 0; i < firsts.size(); ++i) {
-        const bool last = i + 1 == firsts.size();
-        const int end = !last ? firsts[i + 1] : strip.closed ? firsts.front() + count : count;
-        segments.emplace_back();
-        for (int cell = firsts[i]; cell < end; ++cell) {
-            segments.back().push_back(cell % count);
-        }
-    }
-    return segments;
-}
-
-// What is where on the base strips while others are woven in.
-class Front {
-public:
-    Front(const LayProblem& problem, std::span<const int> members, Family base)
-        : problem_(problem), places_(problem.strips.size()) {
-        for (const int strip : members) {
-            if (problem.strips[at(strip)].family == base) {
-                add_base(strip);
-            }
-        }
-        clear();
-    }
-
-    void clear() {
-        holds_.assign(segments_, {});
-        laid_.assign(segment_of_.size(), 0);
-        begun_.assign(problem_.strips.size(), 0);
-    }
-
-    // How many cells of `steps` have to be threaded, in that order.
-    template <typename Iterator>
-    int threaded(Iterator first, Iterator last) {
-        int count = 0;
-        journal_.clear();
-        for (Iterator step = first; step != last; ++step) {
-            count += meet(*step) ? 1 : 0;
-        }
-        while (!journal_.empty()) {
-            holds_[journal_.back().first] = journal_.back().second;
-            journal_.pop_back();
-        }
-        return count;
-    }
-
-    template <typename Iterator>
-    int lay(Iterator first, Iterator last) {
-        int count = 0;
-        for (Iterator step = first; step != last; ++step) {
-            count += meet(*step) ? 1 : 0;
-            laid_[place(*step)] = 1;
-            begun_[at(step->strip)] = 1;
-        }
-        journal_.clear();
-        return count;
-    }
-
-    // Whether something is woven in on this base strip, but not beside the step.
-    bool leaves_gap(const Step& step) const {
-        if (begun_[at(step.strip)] == 0) {
-            return false;
-        }
-        for (const int beside : cells_beside(step)) {
-            if (beside >= 0 && laid_[places_[at(step.strip)] + at(beside)] != 0) {
-                return false;
-            }
-        }
-        return true;
-    }
-
-    // The cells before and behind on the base strip; -1 where there is none.
-    std::array<int, 2> cells_beside(const Step& step) const {
-        const Strip& strip = problem_.strips[at(step.strip)];
-        const int count = static_cast<int>(strip.quads.size());
-        const int before = step.cell > 0 ? step.cell - 1 : strip.closed ? count - 1 : -1;
-        const int behind = step.cell + 1 < count ? step.cell + 1 : strip.closed ? 0 : -1;
-        return {before, behind};
-    }
-
-private:
-    // Where on a segment, by rank, the first and the last strip lies that holds it down.
-    struct Holds {
-        int first = kNever;
-        int last = -1;
-    };
-
-    void add_base(int index) {
-        const Strip& strip = problem_.strips[at(index)];
-        places_[at(index)] = segment_of_.size();
-        segment_of_.resize(segment_of_.size() + strip.quads.size());
-        rank_.resize(segment_of_.size());
-        for (const auto& segment : segments_of(strip, problem_.joints[at(index)])) {
-            int rank = 0;
-            for (const int cell : segment) {
-                segment_of_[places_[at(index)] + at(cell)] = segments_;
-                rank_[places_[at(index)] + at(cell)] = rank++;
-            }
-            ++segments_;
-        }
-    }
-
-    std::size_t place(const Step& step) const { return places_[at(step.strip)] + at(step.cell); }
-
-    // Whether the base strip there can't be folded back though it has to be; else, if it is held
-    // from now on, that is noted.
-    bool meet(const Step& step) {
-        const std::size_t index = place(step);
-        Holds& holds = holds_[segment_of_[index]];
-        const int rank = rank_[index];
-        if (step.under) {
-            return holds.first < rank && rank < holds.last;
-        }
-        journal_.emplace_back(segment_of_[index], holds);
-        holds.first = std::min(holds.first, rank);
-        holds.last = std::max(holds.last, rank);
-        return false;
-    }
-
-    const LayProblem& problem_;
-    std::vector<std::size_t> places_;      // Per strip, where its cells begin in what follows.
-    std::vector<std::size_t> segment_of_;  // Per base cell,
-    std::vector<int> rank_;                // its place on the segment,
-    std::vector<char> laid_;               // and whether something lies there.
-    std::vector<char> begun_;              // Per strip.
-    std::size_t segments_ = 0;
-    std::vector<Holds> holds_;  // Per segment.
-    std::vector<std::pair<std::size_t, Holds>> journal_;
-};
 
 class LaySearch {
 public:
@@ -267,18 +122,18 @@ private:
     }
 
     Choice choice_of(int strip, int last) {
-        const std::vector<Step>& steps = steps_[at(strip)];
-        Choice choice{.threaded = front_.threaded(steps.begin(), steps.end()),
+        const std::vector<LayStep>& steps = steps_[at(strip)];
+        Choice choice{.threaded = front_.threaded(steps, false),
                       .gaps = 0,
                       .apart = true,
                       .strip = strip,
                       .backwards = false};
         if (choice.threaded > 0) {
-            const int other = front_.threaded(steps.rbegin(), steps.rend());
+            const int other = front_.threaded(steps, true);
             choice.backwards = other < choice.threaded;
             choice.threaded = std::min(other, choice.threaded);
         }
-        for (const Step& step : steps) {
+        for (const LayStep& step : steps) {
             choice.gaps += front_.leaves_gap(step) ? 1 : 0;
             choice.apart = choice.apart && !lies_beside(step, last);
         }
@@ -289,7 +144,7 @@ private:
         return problem_.crossings[at(base_strip)][at(cell)].strip;
     }
 
-    bool lies_beside(const Step& step, int last) const {
+    bool lies_beside(const LayStep& step, int last) const {
         const auto beside = front_.cells_beside(step);
         return std::any_of(beside.begin(), beside.end(), [&](int cell) {
             return cell >= 0 && strip_at(step.strip, cell) == last;
@@ -297,15 +152,11 @@ private:
     }
 
     void lay(const Choice& choice) {
-        const std::vector<Step>& steps = steps_[at(choice.strip)];
-        if (choice.backwards) {
-            front_.lay(steps.rbegin(), steps.rend());
-        } else {
-            front_.lay(steps.begin(), steps.end());
-        }
+        const std::vector<LayStep>& steps = steps_[at(choice.strip)];
+        front_.lay(steps, choice.backwards);
         state_[at(choice.strip)] = State::Laid;
         at_front_.erase(std::find(at_front_.begin(), at_front_.end(), choice.strip));
-        for (const Step& step : steps) {
+        for (const LayStep& step : steps) {
             for (const int cell : front_.cells_beside(step)) {
                 const int beside = cell < 0 ? choice.strip : strip_at(step.strip, cell);
                 if (state_[at(beside)] == State::Waiting) {
@@ -327,9 +178,9 @@ private:
         }
         int now = 0;
         for (const auto& [strip, backwards] : trial.order) {
-            const std::vector<Step>& steps = steps_[at(strip)];
+            const std::vector<LayStep>& steps = steps_[at(strip)];
             for (std::size_t i = 0; i < steps.size(); ++i) {
-                const Step& step = steps[backwards ? steps.size() - 1 - i : i];
+                const LayStep& step = steps[backwards ? steps.size() - 1 - i : i];
                 times_[at(step.strip)][at(step.cell)] = now++;
                 order.folds += step.under ? 1 : 0;
             }
@@ -343,9 +194,9 @@ private:
         }
         for (const auto& [strip, backwards] : trial.order) {
             WovenIn woven{strip, {}, {}};
-            const std::vector<Step>& steps = steps_[at(strip)];
+            const std::vector<LayStep>& steps = steps_[at(strip)];
             for (std::size_t i = 0; i < steps.size(); ++i) {
-                const Step& step = steps[backwards ? steps.size() - 1 - i : i];
+                const LayStep& step = steps[backwards ? steps.size() - 1 - i : i];
                 woven.cells.push_back(step.own);
                 if (is_held[at(step.strip)][at(step.cell)] != 0) {
                     woven.held.push_back(step.own);
@@ -407,8 +258,8 @@ private:
     const LayProblem& problem_;
     std::span<const int> members_;
     Family base_;
-    Front front_;
-    std::vector<std::vector<Step>> steps_;  // Per strip that is woven in.
+    LayFront front_;
+    std::vector<std::vector<LayStep>> steps_;  // Per strip that is woven in.
     std::vector<State> state_;
     std::vector<int> woven_;  // Strips to be woven in, ascending.
     std::vector<int> at_front_;
