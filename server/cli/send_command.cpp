@@ -1,4 +1,4 @@
-// `leafcutter send PROGRAM --device URI`: streams a G-code file to a machine, no daemon.
+// `leafcutter send PROGRAM --device URI`: streams a G-code or EGV file to a machine, no daemon.
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "drivers/device.h"
-#include "drivers/grbl/program.h"
+#include "drivers/lihuiyu/egv.h"
 #include "drivers/transport.h"
 #include "geometry/error.h"
 #include "server/cli/command.h"
@@ -29,10 +29,12 @@ constexpr std::size_t kLargestProgram = std::size_t{512} << 20U;
 constexpr milliseconds kSlice{50};
 constexpr milliseconds kShowEvery{250};
 constexpr std::chrono::seconds kCancelTime{10};
+constexpr std::chrono::seconds kHomeTime{90};
 
 struct SendOptions {
     std::string program;
     std::string device;
+    bool home = false;
 };
 
 std::string read_text(const std::string& path) {
@@ -91,16 +93,37 @@ void run_to_end(drivers::Device& device, ProgressLine& line, const std::stop_tok
     }
 }
 
+void home(drivers::Device& device, const std::stop_token& interrupt) {
+    device.home();
+    const Clock::time_point end = Clock::now() + kHomeTime;
+    do {
+        device.run_once(kSlice);
+        if (interrupt.stop_requested()) {
+            device.stop();
+            device.run_once(kSlice);
+            throw geometry::Cancelled();
+        }
+        if (Clock::now() > end) {
+            throw DeviceFailed(device.uri() + ": homing doesn't end");
+        }
+    } while (device.status().state != drivers::MachineState::Idle);
+}
+
+bool is_lihuiyu(std::string_view device) {
+    return device.substr(0, 8) == "lihuiyu:" || device.substr(0, 11) == "sim:lihuiyu";
+}
+
 void send(const SendOptions& options, const CommonOptions& common) {
-    if (options.program.size() > 4 &&
-        options.program.substr(options.program.size() - 4) == ".egv") {
-        throw UsageError(options.program +
-                         ": EGV files are for lihuiyu devices, which are not supported yet");
-    }
     std::string program = read_text(options.program);
+    if (drivers::is_egv(program) && !is_lihuiyu(options.device)) {
+        throw UsageError(options.program + ": EGV files are for lihuiyu devices");
+    }
     const InterruptWatch interrupt;
     const std::unique_ptr<drivers::Device> device = open(options.device);
     ProgressLine line(common);
+    if (options.home) {
+        home(*device, interrupt.token());
+    }
     start(*device, std::move(program));
     run_to_end(*device, line, interrupt.token());
     const drivers::JobProgress progress = device->progress();
@@ -113,13 +136,17 @@ void send(const SendOptions& options, const CommonOptions& common) {
 
 void add_send_command(CLI::App& app, const CommonOptions& common) {
     CLI::App* command =
-        app.add_subcommand("send", "Streams a G-code program to a device, with progress");
+        app.add_subcommand("send", "Streams a G-code or EGV program to a device, with progress");
     const auto options = std::make_shared<SendOptions>();  // Lives as long as the callback.
-    command->add_option("program", options->program, "A G-code file")->required();
+    command->add_option("program", options->program, "A G-code file, or EGV for lihuiyu devices")
+        ->required();
     command
         ->add_option("--device", options->device,
-                     "grbl:/dev/PORT?baud=N, grbl:tcp://host:port, sim:grbl")
+                     "grbl:/dev/PORT?baud=N, grbl:tcp://host:port, marlin: and smoothie: alike, "
+                     "lihuiyu:usb?bus=N&address=N&board=M2, sim:grbl, sim:lihuiyu")
         ->required();
+    command->add_flag("--home", options->home,
+                      "Homes the machine first; a lihuiyu board must be, after power-up or a stop");
     command->callback([options, &common] { send(*options, common); });
 }
 

@@ -1,7 +1,8 @@
-// `leafcutter simulate grbl`: a simulated machine that any program can drive, until Ctrl-C.
+// `leafcutter simulate grbl|lihuiyu`: a simulated machine that any program can drive, until Ctrl-C.
 
 #include <chrono>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -9,7 +10,9 @@
 #include <thread>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include "drivers/sim/lihuiyu_host.h"
 #include "drivers/sim/sim_host.h"
 #include "server/cli/command.h"
 #include "server/cli/interrupt.h"
@@ -22,8 +25,12 @@ struct SimulateOptions {
     std::string machine;
     std::string pty;
     std::optional<unsigned short> tcp_port;
+    std::string burn_path;
     std::string fault;
-    drivers::SimHostOptions host;
+    std::optional<double> speed;
+    std::optional<double> width_mm;
+    std::optional<double> height_mm;
+    std::string board = "M2";
 };
 
 std::unique_ptr<drivers::SimLink> open_link(const SimulateOptions& options) {
@@ -31,21 +38,62 @@ std::unique_ptr<drivers::SimLink> open_link(const SimulateOptions& options) {
                             : drivers::open_pty_link(options.pty);
 }
 
-void simulate(SimulateOptions& options) {
-    if (options.machine != "grbl") {
-        throw UsageError("simulate: \"" + options.machine +
-                         "\" is not supported yet; only grbl is");
+void run_until_interrupted(const InterruptWatch& interrupt,
+                           const std::string& uri,
+                           const std::function<void()>& look) {
+    std::printf("%s\n", uri.c_str());
+    std::fflush(stdout);
+    while (!interrupt.token().stop_requested()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        look();
     }
-    try {
-        if (!options.fault.empty()) {
-            options.host.fault = drivers::parse_fault(options.fault);
+}
+
+void simulate_grbl(const SimulateOptions& options) {
+    drivers::SimHostOptions host_options;
+    host_options.burn_path = options.burn_path;
+    host_options.speed = options.speed.value_or(host_options.speed);
+    drivers::GrblMachineOptions& machine = host_options.machine;
+    machine.bed_width_mm = options.width_mm.value_or(machine.bed_width_mm);
+    machine.bed_height_mm = options.height_mm.value_or(machine.bed_height_mm);
+    if (!options.fault.empty()) {
+        host_options.fault = drivers::parse_fault(options.fault);
+    }
+    const InterruptWatch interrupt;  // Before the machine's thread.
+    const drivers::SimHost host(open_link(options), host_options);
+    run_until_interrupted(interrupt, fmt::format("grbl:{}", host.address()), [] {});
+}
+
+// What the machine complains about goes to stderr, a line each.
+void simulate_lihuiyu(const SimulateOptions& options) {
+    drivers::SimLihuiyuOptions host_options;
+    host_options.burn_path = options.burn_path;
+    host_options.speed = options.speed.value_or(host_options.speed);
+    drivers::LihuiyuMachineOptions& machine = host_options.machine;
+    machine.speed.board = drivers::parse_lihuiyu_board(options.board);
+    machine.bed.width_mm = options.width_mm.value_or(machine.bed.width_mm);
+    machine.bed.height_mm = options.height_mm.value_or(machine.bed.height_mm);
+    machine.bed.origin_down_mm = machine.bed.height_mm;
+    if (!options.fault.empty()) {
+        machine.fault = drivers::parse_lihuiyu_fault(options.fault);
+    }
+    const InterruptWatch interrupt;  // Before the machine's thread.
+    drivers::LihuiyuHost host(open_link(options), host_options);
+    run_until_interrupted(interrupt, fmt::format("lihuiyu:{}", host.address()), [&host] {
+        for (const drivers::Violation& violation : host.take_violations()) {
+            std::fprintf(stderr, "at %.3f s: %s\n", violation.t_s, violation.text.c_str());
         }
-        const InterruptWatch interrupt;
-        const drivers::SimHost host(open_link(options), options.host);
-        std::printf("grbl:%s\n", host.address().c_str());
-        std::fflush(stdout);
-        while (!interrupt.token().stop_requested()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    });
+}
+
+void simulate(const SimulateOptions& options) {
+    try {
+        if (options.machine == "grbl") {
+            simulate_grbl(options);
+        } else if (options.machine == "lihuiyu") {
+            simulate_lihuiyu(options);
+        } else {
+            throw UsageError("simulate: \"" + options.machine + "\": must be grbl or lihuiyu");
         }
     } catch (const std::invalid_argument& error) {
         throw UsageError(error.what());
@@ -58,20 +106,21 @@ void add_simulate_command(CLI::App& app, const CommonOptions& /*common*/) {
     CLI::App* command = app.add_subcommand(
         "simulate", "A simulated machine that any program can drive; prints its device URI");
     const auto options = std::make_shared<SimulateOptions>();  // Lives as long as the callback.
-    command->add_option("machine", options->machine, "grbl")->required();
+    command->add_option("machine", options->machine, "grbl or lihuiyu")->required();
     CLI::Option* pty =
         command->add_option("--pty", options->pty, "Path of a symbolic link to its serial port");
     command->add_option("--tcp", options->tcp_port, "Port on the loopback; 0 picks a free one")
         ->excludes(pty);
-    command->add_option("--burn", options->host.burn_path,
-                        "Where to write the beam log (JSON lines)");
-    command->add_option("--speed", options->host.speed,
+    command->add_option("--burn", options->burn_path, "Where to write the beam log (JSON lines)");
+    command->add_option("--speed", options->speed,
                         "Simulated seconds per second; 0: as fast as possible");
     command->add_option(
         "--fault", options->fault,
-        "drop-ok:N corrupt-ok:N stall:N alarm:N reset:N unplug:N, at the N-th line");
-    command->add_option("--width", options->host.machine.bed_width_mm, "Bed width in mm");
-    command->add_option("--height", options->host.machine.bed_height_mm, "Bed height in mm");
+        "grbl: drop-ok:N corrupt-ok:N stall:N alarm:N reset:N unplug:N, at the N-th line; lihuiyu: "
+        "crc:N crc-always:N busy:N stall:N mute:N power:N lose:N unplug:N, at the N-th packet");
+    command->add_option("--width", options->width_mm, "Bed width in mm");
+    command->add_option("--height", options->height_mm, "Bed height in mm");
+    command->add_option("--board", options->board, "Of lihuiyu: A, B, B1, B2, M, M1, M2, M3");
     command->callback([options] { simulate(*options); });
 }
 
