@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -158,30 +159,29 @@ double distance(const Prism& one, const Prism& two, double enough) {
 // Prisms by the cells of a grid that their boxes touch.
 class PrismGrid {
 public:
-    PrismGrid(std::span<const Prism> prisms, double cell_mm) : cell_mm_(cell_mm) {
-        for (std::size_t i = 0; i < prisms.size(); ++i) {
-            const Place low = place(prisms[i].low);
-            const Place high = place(prisms[i].high);
-            for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-                for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-                    for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-                        const auto key = key_of({x, y, z});
-                        const auto [found, added] = index_.try_emplace(key, cells_.size());
-                        if (added) {
-                            cells_.push_back({{x, y, z}, {}});
-                        }
-                        cells_[found->second].prisms.push_back(static_cast<int>(i));
-                    }
-                }
-            }
-        }
-    }
-
     using Place = std::array<std::int64_t, 3>;
     struct Cell {
         Place place;
         std::vector<int> prisms;
     };
+
+    PrismGrid(std::span<const Prism> prisms, double cell_mm) : cell_mm_(cell_mm) {
+        for (std::size_t i = 0; i < prisms.size(); ++i) {
+            visit(prisms[i], [&](const Place& place) {
+                const auto [found, added] = index_.try_emplace(key_of(place), cells_.size());
+                if (added) {
+                    cells_.push_back({place, {}});
+                }
+                cells_[found->second].prisms.push_back(static_cast<int>(i));
+                return true;
+            });
+        }
+    }
+
+    // Whether the box of `prism` and that of one in the grid touch the same cell.
+    bool touches(const Prism& prism) const {
+        return !visit(prism, [&](const Place& place) { return !index_.contains(key_of(place)); });
+    }
 
     const std::vector<Cell>& cells() const { return cells_; }
     Place place(const Vector3d& point) const {
@@ -191,6 +191,23 @@ public:
     }
 
 private:
+    // Cells that the box touches, as long as `go_on` says so; true if it always did.
+    template <typename GoOn>
+    bool visit(const Prism& prism, const GoOn& go_on) const {
+        const Place low = place(prism.low);
+        const Place high = place(prism.high);
+        for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+            for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+                for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+                    if (!go_on({x, y, z})) {
+                        return false;
+                    }
+                }
+            }
+        }
+        return true;
+    }
+
     // 21 bits each: as good as unique for any model that is not kilometres long.
     static std::int64_t key_of(const Place& p) {
         constexpr std::int64_t kMask = (1 << 21) - 1;
@@ -215,7 +232,8 @@ bool are_one_run(const Prism& one, const Prism& two, const WovenModel& model) {
 
 class Gauge {
 public:
-    Gauge(std::span<const Prism> prisms, WovenModel& model) : prisms_(prisms), model_(model) {}
+    Gauge(std::span<const Prism> prisms, const WovenModel& model)
+        : prisms_(prisms), model_(model) {}
 
     void compare(const PrismGrid& grid, const PrismGrid::Cell& cell) {
         for (std::size_t i = 0; i < cell.prisms.size(); ++i) {
@@ -230,15 +248,19 @@ public:
         }
     }
 
-    std::vector<Clash> finish() {
+    void tell(WovenModel& model) const {
         const auto told = [](double gap) {
             return std::isfinite(gap) ? std::optional<double>(gap) : std::nullopt;
         };
-        model_.smallest_gap_mm = told(crossing_gap_);
-        model_.smallest_side_gap_mm = told(side_gap_);
-        model_.overlaps = static_cast<int>(crossing_overlaps_.size());
-        model_.side_overlaps = static_cast<int>(side_overlaps_.size());
+        model.smallest_gap_mm = told(crossing_gap_);
+        model.smallest_side_gap_mm = told(side_gap_);
+        model.overlaps = static_cast<int>(crossing_overlaps_.size());
+        model.side_overlaps = static_cast<int>(side_overlaps_.size());
+    }
+
+    std::vector<Clash> clashes() const {
         std::vector<Clash> clashes;
+        clashes.reserve(depths_.size());
         for (const auto& [place, depth] : depths_) {
             clashes.push_back({place.first, place.second, depth});
         }
@@ -277,7 +299,7 @@ private:
     }
 
     std::span<const Prism> prisms_;
-    WovenModel& model_;
+    const WovenModel& model_;
     double crossing_gap_ = std::numeric_limits<double>::infinity();
     double side_gap_ = std::numeric_limits<double>::infinity();
     std::set<std::pair<int, int>> crossing_overlaps_;
@@ -293,13 +315,9 @@ double mean_size(std::span<const Prism> prisms) {
     return prisms.empty() ? 0.0 : sum / static_cast<double>(prisms.size());
 }
 
-}  // namespace
-
-std::vector<Clash> measure_gaps(std::span<const Strip> strips,
-                                WovenModel& model,
-                                const geometry::Context& context) {
+// Neighbours that don't touch are to be found too: boxes reach out as far as strips are thick.
+std::vector<Prism> reaching_prisms(std::span<const Strip> strips, const WovenModel& model) {
     std::vector<Prism> prisms = prisms_of(strips, model);
-    // Neighbours that don't touch are to be found too: boxes reach out as far as strips are thick.
     double reach = 0.0;
     for (const WovenStrip& strip : model.strips) {
         reach = std::max(reach, strip.thickness_mm);
@@ -308,18 +326,75 @@ std::vector<Clash> measure_gaps(std::span<const Strip> strips,
         prism.low.array() -= reach;
         prism.high.array() += reach;
     }
+    return prisms;
+}
+
+void compare_all(std::span<const Prism> prisms, Gauge& gauge, const geometry::Context& context) {
     const double size = mean_size(prisms);
-    Gauge gauge(prisms, model);
-    if (size > 0.0) {
-        const PrismGrid grid(prisms, size);
-        for (std::size_t i = 0; i < grid.cells().size(); ++i) {
-            if (i % kCheckEvery == 0) {
-                context.check();
+    if (size <= 0.0) {
+        return;
+    }
+    const PrismGrid grid(prisms, size);
+    for (std::size_t i = 0; i < grid.cells().size(); ++i) {
+        if (i % kCheckEvery == 0) {
+            context.check();
+        }
+        gauge.compare(grid, grid.cells()[i]);
+    }
+}
+
+// The boxes of those prisms that belong to changed cells or to the cells beside them.
+class ChangedBoxes {
+public:
+    ChangedBoxes(std::span<const Prism> prisms, std::span<const Clash> changed) {
+        std::set<std::pair<int, int>> places;
+        for (const Clash& clash : changed) {
+            for (int cell = clash.cell - 1; cell <= clash.cell + 1; ++cell) {
+                places.insert({clash.strip, cell});
             }
-            gauge.compare(grid, grid.cells()[i]);
+        }
+        for (const Prism& prism : prisms) {
+            if (places.contains({prism.strip, prism.cell})) {
+                boxes_.push_back(prism);
+            }
+        }
+        const double size = mean_size(boxes_);
+        if (size > 0.0) {
+            grid_.emplace(boxes_, size);
         }
     }
-    return gauge.finish();
+
+    bool meet(const Prism& prism) const { return grid_ && grid_->touches(prism); }
+
+private:
+    std::vector<Prism> boxes_;
+    std::optional<PrismGrid> grid_;
+};
+
+}  // namespace
+
+std::vector<Clash> measure_gaps(std::span<const Strip> strips,
+                                WovenModel& model,
+                                const geometry::Context& context) {
+    const std::vector<Prism> prisms = reaching_prisms(strips, model);
+    Gauge gauge(prisms, model);
+    compare_all(prisms, gauge, context);
+    gauge.tell(model);
+    return gauge.clashes();
+}
+
+std::vector<Clash> clashes_near(std::span<const Strip> strips,
+                                const WovenModel& model,
+                                std::span<const Clash> changed,
+                                const geometry::Context& context) {
+    std::vector<Prism> prisms = reaching_prisms(strips, model);
+    const ChangedBoxes boxes(prisms, changed);
+    prisms.erase(std::remove_if(prisms.begin(), prisms.end(),
+                                [&](const Prism& prism) { return !boxes.meet(prism); }),
+                 prisms.end());
+    Gauge gauge(prisms, model);
+    compare_all(prisms, gauge, context);
+    return gauge.clashes();
 }
 
 }  // namespace leafcutter::fab

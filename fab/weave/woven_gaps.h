@@ -27,4 +27,11 @@ std::vector<Clash> measure_gaps(std::span<const Strip> strips,
                                 WovenModel& model,
                                 const geometry::Context& context = {});
 
+// What measure_gaps() would return near the cells of `changed`, if nothing else changed since it
+// returned them. Sets nothing.
+std::vector<Clash> clashes_near(std::span<const Strip> strips,
+                                const WovenModel& model,
+                                std::span<const Clash> changed,
+                                const geometry::Context& context = {});
+
 }  // namespace leafcutter::fab

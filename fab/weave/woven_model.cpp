@@ -26,7 +26,7 @@ constexpr double kLongestUp = 3.0;
 constexpr std::size_t kMostFineCells = 6500;
 
 // Rounds of drawing strips narrower, by more each time.
-constexpr int kMostRounds = 6;
+constexpr int kMostRounds = 8;
 
 // A point of the way from one crossing to the next: how far along, how far of the climb, how steep.
 struct WayPoint {
@@ -306,21 +306,21 @@ WovenModel build_woven_model(const geometry::QuadMesh& mesh,
     std::vector<NarrowedStrip> narrowed = narrow_strips(mesh, strips, rules);
     Thinning thinning(mesh, strips, narrowed);
     WovenModel model;
+    model.strips = build_strips(mesh, strips, narrowed, crossings, rules);
+    std::vector<Clash> clashes = measure_gaps(strips, model, context);
+    model.tight_crossings = model.overlaps;
+    model.tight_sides = model.side_overlaps;
+    for (const Clash& clash : clashes) {
+        model.lacking_mm = std::max(model.lacking_mm, clash.depth_mm);
+    }
     double growth = 1.0;
-    for (int round = 0; round <= kMostRounds; ++round, growth *= 1.5) {
-        model.strips = build_strips(mesh, strips, narrowed, crossings, rules);
-        const std::vector<Clash> clashes = measure_gaps(strips, model, context);
-        if (round == 0) {
-            model.tight_crossings = model.overlaps;
-            model.tight_sides = model.side_overlaps;
-            for (const Clash& clash : clashes) {
-                model.lacking_mm = std::max(model.lacking_mm, clash.depth_mm);
-            }
-        }
-        if (clashes.empty() || round == kMostRounds) {
-            break;
-        }
+    for (int round = 0; round < kMostRounds && !clashes.empty(); ++round, growth *= 1.3) {
         thinning.thin(clashes, growth);
+        model.strips = build_strips(mesh, strips, narrowed, crossings, rules);
+        clashes = clashes_near(strips, model, clashes, context);
+    }
+    if (thinning.cells() > 0) {
+        measure_gaps(strips, model, context);
     }
     model.narrowed_cells = thinning.cells();
     model.narrowed_mm = thinning.most_mm();
