@@ -57,7 +57,8 @@ std::vector<NameWish> name_wishes(const CrossedCells& cells) {
     std::vector<NameWish> wishes;
     for (const Run& run : runs_of(cells.numbers)) {
         wishes.push_back(wish_at_end(cells, run, run.first, 1));
-        if (run.last > run.first + 1) {
+        const bool ends_piece = run.last + 1 == static_cast<int>(cells.numbers.size());
+        if (ends_piece && run.last > run.first) {
             wishes.push_back(wish_at_end(cells, run, run.last, -1));
         }
         for (int i = run.first + cells.every; i + cells.every / 2 < run.last; i += cells.every) {

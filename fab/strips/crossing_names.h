@@ -17,8 +17,9 @@ struct CrossedCells {
 };
 
 // Numbers that go up or down by one from cell to cell make a run. Each run is named at its first
-// and its last cell and at every `every` cells between: whoever stands at any cell finds its
-// number by counting. Cells that lie under are preferred: there ids don't show in the end.
+// cell and at every `every` cells behind it, the last one at the piece's last cell too: whoever
+// stands at any cell finds its number by counting. Cells that lie under are preferred: there ids
+// don't show in the end.
 std::vector<NameWish> name_wishes(const CrossedCells& cells);
 
 }  // namespace leafcutter::fab

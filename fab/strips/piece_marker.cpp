@@ -26,14 +26,15 @@ constexpr double kLineClearMm = 0.1;  // Between lines.
 constexpr double kBarClearMm = 0.2;   // About a bar.
 
 constexpr double kLabelPart = 0.5;  // Height of a label in widths of its strip.
-constexpr double kNamePart = 0.3;   // Of a crossing strip's id.
+constexpr double kNamePart = 0.27;  // Of a crossing strip's id.
 constexpr double kNameOfLabel = 0.6;
-constexpr double kReadableLabelMm = 2.0;  // Smaller ones rather take several cells.
+constexpr double kReadableLabelMm = 1.6;  // Smaller ones rather take several cells,
+constexpr double kAlongMm = 3.0;          // where they are no higher than this.
 constexpr double kReadableNameMm = 1.6;
 constexpr double kEndMm = 45.0;  // Labels stand this near to their end, or in kEndCells.
 constexpr std::size_t kEndCells = 3;
-constexpr double kNamePitchMm = 30.0;
-constexpr int kFewestBetween = 4;  // Cells from name to name.
+constexpr double kNamePitchMm = 60.0;
+constexpr int kFewestBetween = 6;  // Cells from name to name.
 constexpr int kMostBetween = 10;
 
 Mark line(Operation operation, Polyline path) {
@@ -117,9 +118,16 @@ private:
         return on_rung(i, edge, 1.0 - edge);
     }
 
+    // Between the corners where the tab sets in, which is narrower: arrows by much.
     void add_tab_line(PieceEnd end) {
-        if (frame_.tab(end)) {
-            keep_if_free(whole_rung(end == PieceEnd::Start ? 0 : frame_.cells()));
+        if (!frame_.tab(end)) {
+            return;
+        }
+        const std::size_t rung = end == PieceEnd::Start ? 0 : frame_.cells();
+        for (const double edge : {0.08, 0.13, 0.2, 0.28, 0.36}) {
+            if (keep_if_free(on_rung(rung, edge, 1.0 - edge))) {
+                return;
+            }
         }
     }
 
@@ -239,7 +247,8 @@ private:
     }
 
     std::optional<PlacedText> label_along(PieceEnd end, const std::string& code) const {
-        const TextHeights heights = label_heights();
+        TextHeights heights = label_heights();
+        heights.most_mm = std::min(heights.most_mm, kAlongMm);
         const double length = frame_.length_mm();
         if (end == PieceEnd::Finish) {
             const double from = std::max(length / 2.0, length - 2.0 * kEndMm);
@@ -254,7 +263,8 @@ private:
         if (!tab || other.empty()) {
             return;
         }
-        const std::string text = "+" + other;
+        // A ring of one piece is joined to itself: a plus tells as much.
+        const std::string text = other == piece_.id ? "+" : "+" + other;
         auto joint = fit_in_cell(room_, *tab, text, label_heights());
         for (std::size_t i = 0; i < std::min(kEndCells, frame_.cells()) && !joint; ++i) {
             joint = fit_in_cell(room_, frame_.cell(from_end(end, i)), text, label_heights());
@@ -330,14 +340,16 @@ private:
         const Vector2d left = (cell.left0 + cell.left1) / 2.0;
         const Vector2d rung = (cell.right0 + cell.right1) / 2.0 - left;
         const double width = std::max(rung.norm(), 1e-9);
-        const double half = std::clamp(0.1 * width, 0.3, 1.25) / width;
-        for (const double shift : {0.0, 0.2, -0.2}) {
-            for (const double at : {0.5, 0.3, 0.7, 0.2, 0.8}) {
-                const Vector2d start = left + shift * cell.length_mm * cell.along;
-                const MarkShape bar(start + (at - half) * rung, start + (at + half) * rung);
-                if (room_.is_free(bar, kBarClearMm)) {
-                    keep(bar);
-                    return true;
+        const double full = std::clamp(0.2 * width, 0.6, 2.5) / width;
+        for (const double length : {full, 0.6 * full}) {
+            for (const double shift : {0.0, 0.2, -0.2, 0.35, -0.35}) {
+                for (const double at : {0.5, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88}) {
+                    const Vector2d centre = left + at * rung + shift * cell.length_mm * cell.along;
+                    const MarkShape bar(centre - length / 2.0 * rung, centre + length / 2.0 * rung);
+                    if (room_.is_free(bar, kBarClearMm)) {
+                        keep(bar);
+                        return true;
+                    }
                 }
             }
         }
