@@ -144,6 +144,9 @@ fab::Material material_of(const PackageFacts& facts,
         other != nullptr && (found == nullptr || !wishes.material.empty())) {
         found = other;
     }
+    if (const fab::Material* other = fab::find_material(wishes.instead, wanted)) {
+        found = other;
+    }
     if (found == nullptr) {
         refuse("no-such-material", fmt::format("material: there is no {}", wanted));
     }

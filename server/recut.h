@@ -23,13 +23,14 @@ struct PackageSource {
 struct RecutWishes {
     std::vector<std::string> pieces;  // "W12.1", a whole strip "W12", "sheet:3", or "all".
     std::optional<fab::SheetSize> sheet = {};
-    fab::Ring remnant = {};     // Outline; empty: none.
-    std::string material = {};  // Id; empty: those of the package.
-    double time_s = 0.5;        // At most, of the time the package took to nest.
+    fab::Ring remnant = {};                   // Outline; empty: none.
+    std::string material = {};                // Id; empty: those of the package.
+    std::vector<fab::Material> instead = {};  // Of records of the package of the same id.
+    double time_s = 0.5;                      // At most, of the time the package took to nest.
 };
 
-// `materials` may replace those that the package was made of. What comes is a package of its own:
-// it can be audited, and cut again.
+// `materials` are those that wishes.material may name. What comes is a package of its own: it can
+// be audited, and cut again.
 //
 // Throws geometry::Error: BadOption for a piece, sheet or material that is not there (naming the
 // nearest) or no room; BadFile for a package that can't be read; Cancelled.

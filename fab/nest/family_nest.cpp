@@ -37,14 +37,7 @@ NestOptions nest_options(const NestingParams& params, const Batch& batch, double
     options.kerf_mm = batch.material.kerf_mm;
     options.turns_deg = turns_on(batch.material, params.rotation);
     options.seed = params.seed;
-    std::size_t corners = 0;
-    for (const Piece* piece : batch.pieces) {
-        corners += piece->outline.size();
-    }
-    const double mean_corners =
-        static_cast<double>(corners) / static_cast<double>(batch.pieces.size());
-    const double tried = params.time_s * share * kTriedPerSecondAndCorner / (4.0 + mean_corners);
-    options.max_evaluations = std::max<std::int64_t>(1, std::llround(tried));
+    options.max_evaluations = tries_in(params.time_s * share, batch.pieces);
     options.time_s = kSlowestFactor * params.time_s * share;
     return options;
 }
@@ -197,6 +190,16 @@ std::vector<double> turns_on(const Material& material, Rotation rotation) {
         }
     }
     return turns;
+}
+
+std::int64_t tries_in(double time_s, std::span<const Piece* const> pieces) {
+    std::size_t corners = 0;
+    for (const Piece* piece : pieces) {
+        corners += piece->outline.size();
+    }
+    const double mean_corners = static_cast<double>(corners) / static_cast<double>(pieces.size());
+    const double tried = time_s * kTriedPerSecondAndCorner / (4.0 + mean_corners);
+    return std::max<std::int64_t>(1, std::llround(tried));
 }
 
 Layout nest_families(std::span<const Piece> pieces,

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,10 @@ PieceRoom piece_room(const Material& material, const NestingParams& params);
 // The rotations that `material` leaves of those asked for; empty: any. The search knows single
 // rotations only, so a tolerance around the grain becomes some of them.
 std::vector<double> turns_on(const Material& material, Rotation rotation);
+
+// Places to try for these pieces in about `time_s` on an ordinary machine: work, not time, bounds a
+// search, so that equal input gives equal layouts.
+std::int64_t tries_in(double time_s, std::span<const Piece* const> pieces);
 
 // Sheets are numbered from 1, weft first. Density counts whole sheets. All sheets of a material are
 // of one size: the first one it lists, unless another one holds more pieces or takes clearly less

@@ -86,10 +86,9 @@ public:
         search.seed = params_.seed;
         // A few pieces are soon laid as well as can be.
         constexpr std::int64_t kPerPiece = 100'000;
-        constexpr double kPerSecond = 1e6;
         const auto count = static_cast<std::int64_t>(pieces_.size());
-        search.max_evaluations = std::clamp<std::int64_t>(std::llround(params_.time_s * kPerSecond),
-                                                          1, kPerPiece * count * count);
+        search.max_evaluations =
+            std::min(tries_in(params_.time_s, pieces_), kPerPiece * count * count);
         search.time_s = 4.0 * params_.time_s;
         Layout layout = layout_of(solve(problem, search, context));
         context.check();

@@ -7,15 +7,18 @@
 
 namespace leafcutter::server {
 
-std::vector<fab::Material> wanted_materials(const std::string& file) {
-    const auto built_in = fab::built_in_materials();
+std::vector<fab::Material> materials_of_file(const std::string& file) {
     if (file.empty()) {
-        return {built_in.begin(), built_in.end()};
+        return {};
     }
     constexpr std::size_t kMostBytes = std::size_t{4} << 20;
     const std::vector<std::byte> bytes = read_input_file(file, kMostBytes);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    return with_materials(built_in, materials_from_text(text, built_in));
+    return materials_from_text(text, fab::built_in_materials());
+}
+
+std::vector<fab::Material> wanted_materials(const std::string& file) {
+    return with_materials(fab::built_in_materials(), materials_of_file(file));
 }
 
 }  // namespace leafcutter::server

@@ -13,4 +13,7 @@ namespace leafcutter::server {
 // it.
 std::vector<fab::Material> wanted_materials(const std::string& file);
 
+// Only those of the file.
+std::vector<fab::Material> materials_of_file(const std::string& file);
+
 }  // namespace leafcutter::server

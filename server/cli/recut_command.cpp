@@ -20,6 +20,7 @@
 #include "server/cli/material_options.h"
 #include "server/cli/package_dir.h"
 #include "server/json_reader.h"
+#include "server/material_json.h"
 #include "server/params.h"
 #include "server/recut.h"
 #include "server/recut_wishes.h"
@@ -87,6 +88,7 @@ RecutWishes wishes_of(const RecutArguments& arguments) {
             parse_params_text(read_text(arguments.remnant_file), arguments.remnant_file);
         wishes.remnant = read_outline(file, arguments.remnant_file);
     }
+    wishes.instead = materials_of_file(arguments.materials_file);
     if (wishes.sheet && !wishes.remnant.empty()) {
         throw UsageError("--sheet: not together with --remnant");
     }
@@ -109,7 +111,8 @@ double steady_seconds() {
 void run_recut(const RecutArguments& arguments, const CommonOptions& common) {
     const RecutWishes wishes = wishes_of(arguments);
     const PackageSource source = source_of(arguments.package);
-    const std::vector<fab::Material> materials = wanted_materials(arguments.materials_file);
+    const std::vector<fab::Material> materials =
+        with_materials(fab::built_in_materials(), wishes.instead);
     const std::string output = output_of(arguments);
     const PackageDir directory(output);
     const InterruptWatch interrupt;

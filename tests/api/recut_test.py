@@ -102,6 +102,15 @@ class CommandLine(unittest.TestCase):
         (sheet,) = self.read("remnant/layout.json")["sheets"]
         self.assertEqual(sheet["outline"], [[0, 0], [200, 0], [0, 200]])
 
+    def test_a_file_of_materials_replaces_those_of_the_package(self):
+        (self.root / "other.json").write_text(json.dumps(
+            [{**OWN, "sheets": [{"width_mm": 222, "height_mm": 111}]}]))
+        status, _, error = run("recut", self.root / "plate", "W1", "-o", self.root / "other", "--materials",
+                               self.root / "other.json")
+        self.assertEqual((status, error), (0, ""))
+        (sheet,) = self.read("other/layout.json")["sheets"]
+        self.assertEqual((sheet["width_mm"], sheet["height_mm"]), (222, 111))
+
     def test_refusals_name_piece_and_package(self):
         package = str(self.root / "plate")
         status, _, error = run("recut", package, "W11.1", "-o", self.root / "no")
