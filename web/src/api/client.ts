@@ -99,3 +99,8 @@ export async function artifactText(job: string, path: string): Promise<string> {
   const url = artifactUrl(job, path).slice(kApi.length);
   return (await answer(url, {})).text();
 }
+
+export async function artifactBytes(job: string, path: string): Promise<ArrayBuffer> {
+  const url = artifactUrl(job, path).slice(kApi.length);
+  return (await answer(url, {})).arrayBuffer();
+}

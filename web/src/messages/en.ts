@@ -151,11 +151,12 @@ export const en = {
 
   model: {
     title: 'Weave',
-    modes: { woven: 'Woven', weft: 'Weft', warp: 'Warp', surface: 'Surface' },
+    modes: { woven: 'Woven', solid: 'True thickness', weft: 'Weft', warp: 'Warp', surface: 'Surface' },
     modesLabel: 'What to show',
     label: (name: string) => `3D view of ${name}. Arrow keys turn it, plus and minus zoom.`,
     loading: 'Loading the model',
     none: 'This browser cannot show 3D. The sheets work without it.',
+    noSolid: 'The model with real thickness could not be loaded.',
     reset: 'Reset view',
   },
 

@@ -2,7 +2,8 @@
 
 import { signal } from '@preact/signals';
 
-import { artifactText, listArtifacts } from '../api/client.ts';
+import { artifactBytes, artifactText, listArtifacts } from '../api/client.ts';
+import type { SolidModel } from '../api/glb.ts';
 import { type CriticalGraph, type QuadMesh, readCriticalGraph, readLayout, readQuads, readReport, readStrips, readWeave } from '../api/package_files.ts';
 import type { Artifact } from '../api/types.ts';
 import type { Reader } from '../lib/check.ts';
@@ -87,6 +88,18 @@ export async function loadPackage(job: string): Promise<void> {
   );
   // Another job may have been opened while this one was fetched.
   if (jobPackage.value.state === 'loading' && jobPackage.value.job === job) jobPackage.value = result;
+}
+
+const kSolidPath = 'woven.glb';
+
+// Packages made with output.models = false have none.
+export function hasSolidModel(content: JobPackage): boolean {
+  return content.artifacts.some((artifact) => artifact.path === kSolidPath);
+}
+
+export async function loadSolidModel(job: string): Promise<SolidModel> {
+  const [{ readSolidModel }, bytes] = await Promise.all([import('../api/glb.ts'), artifactBytes(job, kSolidPath)]);
+  return readSolidModel(bytes);
 }
 
 export function sheetProgramPath(sheet: number): string {

@@ -12,13 +12,15 @@ import {
   Sphere,
 } from 'three';
 
+import type { SolidModel } from '../../api/glb.ts';
 import type { CriticalGraph, Family, QuadMesh } from '../../api/package_files.ts';
 import { buildRibbons } from '../../state/ribbons.ts';
 import type { StripIndex } from '../../state/strip_index.ts';
 import { CriticalLines } from './critical_lines.ts';
 import { edgeGeometry, quadsOf, ribbonGeometry, stepsFor, surfaceGeometry } from './geometry.ts';
+import { Solid } from './solid.ts';
 
-export type ViewMode = 'woven' | 'weft' | 'warp' | 'surface';
+export type ViewMode = 'woven' | 'solid' | 'weft' | 'warp' | 'surface';
 
 export interface ModelContent {
   readonly mesh: QuadMesh;
@@ -58,6 +60,9 @@ export class Model {
   // A geometry shares its vertices with what it marks, and freeing it would free those too: kept for each
   // strip that was ever marked, which adds up to one more index of the ribbons at most.
   private readonly marked = new Map<string, BufferGeometry>();
+  private solid: Solid | null = null; // Fetched when it is first looked at.
+  private marks: readonly [string | null, string | null] = [null, null];
+  private palette: Palette | null = null;
   mode: ViewMode = 'woven';
 
   constructor(private readonly content: ModelContent) {
@@ -85,11 +90,26 @@ export class Model {
     this.parts.warp.visible = mode === 'woven' || mode === 'warp';
     this.skin.visible = mode === 'surface';
     this.edges.visible = mode === 'surface';
+    if (this.solid !== null) this.solid.root.visible = mode === 'solid';
+    // Its own lines would lie inside the slabs.
+    this.critical.root.visible = mode !== 'solid';
+  }
+
+  addSolid(model: SolidModel): void {
+    if (this.solid !== null) return;
+    this.solid = new Solid(model);
+    this.root.add(this.solid.root);
+    if (this.palette !== null) this.solid.paint(this.palette.mark);
+    this.show(this.mode);
+    this.mark(...this.marks);
   }
 
   mark(pointed: string | null, chosen: string | null): void {
-    this.put(this.pointed, pointed === chosen ? null : pointed);
-    this.put(this.chosen, chosen);
+    this.marks = [pointed, chosen];
+    const solid = this.mode === 'solid';
+    this.solid?.mark(pointed, chosen);
+    this.put(this.pointed, solid || pointed === chosen ? null : pointed);
+    this.put(this.chosen, solid ? null : chosen);
   }
 
   private put(mesh: Mesh, id: string | null): void {
@@ -104,6 +124,8 @@ export class Model {
   }
 
   paint(palette: Palette): void {
+    this.palette = palette;
+    this.solid?.paint(palette.mark);
     this.parts.weft.material.color.set(palette.weft);
     this.parts.warp.material.color.set(palette.warp);
     this.skin.material.color.set(palette.surface);
@@ -127,5 +149,6 @@ export class Model {
     for (const mesh of [this.parts.weft, this.parts.warp, this.skin, this.pointed, this.chosen]) mesh.material.dispose();
     this.edges.material.dispose();
     this.critical.dispose();
+    this.solid?.dispose();
   }
 }

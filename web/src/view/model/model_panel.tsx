@@ -3,14 +3,14 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { t } from '../../messages/messages.ts';
-import { chooseStrip, chosenStrip, type JobPackage, pointedStrip } from '../../state/package_store.ts';
+import { chooseStrip, chosenStrip, hasSolidModel, type JobPackage, loadSolidModel, pointedStrip } from '../../state/package_store.ts';
 import { Panel, Segmented } from '../controls.tsx';
 import { StripPicker } from '../strip_picker.tsx';
 import { ZoomButtons } from '../zoom_buttons.tsx';
 import type { Palette, ViewMode } from './model.ts';
 import type { ModelScene } from './scene.ts';
 
-const kModes: readonly ViewMode[] = ['woven', 'weft', 'warp', 'surface'];
+const kModes: readonly ViewMode[] = ['woven', 'solid', 'weft', 'warp', 'surface'];
 const kTurn = Math.PI / 24;
 const kClickSlack = 5; // Pixels: a press that moves less is a click.
 
@@ -45,6 +45,28 @@ function turnByKey(scene: ModelScene, event: KeyboardEvent): void {
 }
 
 type SceneState = ModelScene | 'loading' | 'none';
+
+// Fetches the model with real thickness once it is looked at. Says whether it is on its way or failed.
+function useSolid(scene: SceneState, wanted: boolean, job: string): 'idle' | 'loading' | 'none' {
+  const [state, setState] = useState<'idle' | 'loading' | 'none'>('idle');
+  const fetched = useRef<ModelScene | null>(null);
+  useEffect(() => {
+    if (!wanted || typeof scene === 'string' || fetched.current === scene) return;
+    fetched.current = scene;
+    setState('loading');
+    loadSolidModel(job).then(
+      (model) => {
+        if (fetched.current === scene) scene.addSolid(model);
+        setState('idle');
+      },
+      (fault: unknown) => {
+        console.warn('no woven model', fault);
+        setState('none');
+      },
+    );
+  }, [scene, wanted, job]);
+  return state;
+}
 
 // The scene on `canvas`, once three.js has come; follows the colour scheme.
 function useScene(content: JobPackage): [(canvas: HTMLCanvasElement | null) => void, SceneState] {
@@ -109,6 +131,7 @@ export function ModelPanel(props: { readonly name: string; readonly content: Job
   const [mode, setMode] = useState<ViewMode>('woven');
   const [setCanvas, scene] = useScene(props.content);
   const pointing = usePointing(scene);
+  const solid = useSolid(scene, mode === 'solid', props.content.job);
   const pointed = pointedStrip.value;
   const chosen = chosenStrip.value;
   useEffect(() => {
@@ -117,7 +140,8 @@ export function ModelPanel(props: { readonly name: string; readonly content: Job
     scene.mark(pointed, chosen);
   }, [scene, mode, pointed, chosen]);
   const live = typeof scene === 'string' ? null : scene;
-  const choices = kModes.map((value) => ({ value, label: t.model.modes[value], class: `mode-${value}` }));
+  const modes = kModes.filter((value) => value !== 'solid' || hasSolidModel(props.content));
+  const choices = modes.map((value) => ({ value, label: t.model.modes[value], class: `mode-${value}` }));
   return (
     <Panel
       title={t.model.title}
@@ -135,6 +159,8 @@ export function ModelPanel(props: { readonly name: string; readonly content: Job
           {...pointing}
         />
         {scene === 'loading' && <p class="view-note">{t.model.loading}</p>}
+        {solid === 'loading' && <p class="view-note">{t.model.loading}</p>}
+        {solid === 'none' && mode === 'solid' && <p class="view-note">{t.model.noSolid}</p>}
         {scene === 'none' && <p class="view-note">{t.model.none}</p>}
       </div>
       <div class="view-foot">

@@ -3,11 +3,13 @@
 
 import { DoubleSide, Mesh, MeshBasicMaterial, Raycaster, Vector2 } from 'three';
 
+import type { SolidModel } from '../../api/glb.ts';
 import { Model, type ModelContent, type Palette, type ViewMode } from './model.ts';
 import { Stage } from './stage.ts';
 
 export interface ModelScene {
   show(mode: ViewMode): void;
+  addSolid(model: SolidModel): void;
   mark(pointed: string | null, chosen: string | null): void;
   stripAt(clientX: number, clientY: number): string | null;
   turn(dx: number, dy: number): void; // Radians.
@@ -42,6 +44,7 @@ export function createModelScene(canvas: HTMLCanvasElement, content: ModelConten
 
   return {
     show: drawn((mode: ViewMode) => model.show(mode)),
+    addSolid: drawn((solid: SolidModel) => model.addSolid(solid)),
     mark: drawn((pointed: string | null, chosen: string | null) => model.mark(pointed, chosen)),
     paint: drawn((palette: Palette) => model.paint(palette)),
     stripAt,
