@@ -111,6 +111,18 @@ step('the weave is drawn in 3D, in every mode, and turns by keyboard', async () 
   await desk.page.keyboard.press('Home');
 });
 
+step('a daemon of ours gives the weave its real thickness', async () => {
+  const solid = desk.page.getByRole('button', { name: 'True thickness', exact: true });
+  if (target.made === 'daemon') assert.equal(await solid.count(), 1);
+  if ((await solid.count()) === 0) return;
+  await solid.click();
+  await desk.page.waitForFunction(() => document.querySelector('.model .view-note') === null);
+  await desk.page.waitForTimeout(500);
+  assert.ok((await canvasColours(desk.page)) > 20);
+  await picture(desk.page, 'thickness-light');
+  await desk.page.getByRole('button', { name: 'Woven', exact: true }).click();
+});
+
 step('the sheets are drawn with every piece', async () => {
   assert.ok((await desk.page.locator('.sheet .piece').count()) > 3);
   await picture(desk.page, 'ready-light');

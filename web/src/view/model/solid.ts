@@ -4,6 +4,10 @@ import { BufferAttribute, BufferGeometry, Color, Group, Mesh, MeshLambertMateria
 
 import type { SolidModel } from '../../api/glb.ts';
 
+const kDimmed = new Color('#b9b6ae'); // What other strips fade to while one is chosen.
+const kDimmedPart = 0.65;
+
+// Materials have any colour, that of marks too: a chosen strip is told from the others by theirs.
 export class Solid {
   readonly root = new Group();
   private readonly paper: Readonly<Record<'weft' | 'warp', MeshLambertMaterial>>;
@@ -12,9 +16,9 @@ export class Solid {
   private readonly meshes = new Map<string, Mesh<BufferGeometry, MeshLambertMaterial>>();
   private marked: readonly (string | null)[] = [];
 
-  constructor(model: SolidModel) {
+  constructor(private readonly model: SolidModel) {
     const paper = (family: 'weft' | 'warp'): MeshLambertMaterial =>
-      new MeshLambertMaterial({ color: new Color(...model.colours[family]), flatShading: true });
+      new MeshLambertMaterial({ color: new Color().setRGB(...model.colours[family]), flatShading: true });
     this.paper = { weft: paper('weft'), warp: paper('warp') };
     for (const strip of model.strips) {
       const geometry = new BufferGeometry();
@@ -34,6 +38,10 @@ export class Solid {
       if (mesh !== undefined) mesh.material = this.paper[mesh.userData['family'] as 'weft' | 'warp'];
     }
     this.marked = [pointed, chosen];
+    for (const family of ['weft', 'warp'] as const) {
+      const colour = this.paper[family].color.setRGB(...this.model.colours[family]);
+      if (chosen !== null) colour.lerp(kDimmed, kDimmedPart);
+    }
     this.marked.forEach((id, k) => {
       const mesh = id === null ? undefined : this.meshes.get(id);
       if (mesh !== undefined) mesh.material = k === 1 ? this.chosen : this.pointed;
