@@ -24,6 +24,7 @@
 #include "fab/strips/strips.h"
 #include "fab/utf8.h"
 #include "fab/warnings.h"
+#include "fab/weave/openings.h"
 #include "fab/weave/weave.h"
 #include "fab/woven_stage.h"
 #include "geometry/closest_point.h"
@@ -291,8 +292,7 @@ private:
         limits.self_gap_mm = material.kerf_mm + kSelfGapMm;
         limits.kerf_mm = material.kerf_mm;
         limits.min_radius_mm = material.min_radius_mm;
-        limits.crossed_mm =
-            (&material == &result_.weft ? result_.warp : result_.weft).thickness_mm;
+        limits.crossed_mm = (&material == &result_.weft ? result_.warp : result_.weft).thickness_mm;
         return limits;
     }
 
@@ -308,11 +308,12 @@ private:
         }
         result_.weave = weave_cells(result_.quads, result_.params.weave);
         result_.crossings = crossings_of(result_.strips, result_.weave);
+        const auto threading = opening_costs(result_.quads, result_.strips, result_.crossings);
         JointMap joints(result_.quads);
         for (std::size_t i = 0; i < result_.strips.size(); ++i) {
             Strip& strip = result_.strips[i];
             const PieceLimits& limit = limits[strip.family == Family::Weft ? 0 : 1];
-            const PieceRules rules{fit, limit, result_.crossings[i], &joints};
+            const PieceRules rules{fit, limit, result_.crossings[i], &joints, threading[i]};
             for (Piece& piece : make_pieces(strip, result_.quads, rules, warnings_)) {
                 result_.pieces.push_back(std::move(piece));
             }

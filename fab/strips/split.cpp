@@ -19,6 +19,9 @@ using Eigen::Vector2d;
 // Evenness of lengths against joints that show: a piece half as long again as the mean costs a
 // tenth of a joint in full sight.
 constexpr double kEvenness = 0.4;
+// One joint of a closed strip where nothing has to be threaded is enough: how far off the others
+// are doesn't count.
+constexpr double kMostThreadingCost = 3.0;
 
 // An arrow on a shorter tab would not hold.
 constexpr double kLeastArrowMm = 6.0;
@@ -113,6 +116,9 @@ public:
                                           .crossings = places.crossings,
                                           .tab_mm = options_.tab_mm,
                                           .joints = places.joints});
+        for (std::size_t i = 0; i < places.threading.size(); ++i) {
+            problem.joint_cost[i] += std::min(places.threading[i], kMostThreadingCost);
+        }
         problem.length.assign(steps_.begin(), steps_.begin() + total_);
         problem.good = [this](int first, int count) {
             return verdict(first, count) == Verdict::Good;

@@ -46,8 +46,10 @@ struct Parting {
 };
 
 struct StripPlaces {
-    std::span<const Crossing> crossings;  // Of the strip, per cell; may be empty.
-    const JointMap* joints = nullptr;     // Those made before; may be null.
+    std::span<const Crossing> crossings;     // Of the strip, per cell; may be empty.
+    const JointMap* joints = nullptr;        // Those made before; may be null.
+    std::span<const double> threading = {};  // Per cell what a joint before it costs in threading
+                                             // (opening_costs); may be empty.
 };
 
 // Parts `strip` into the fewest pieces that are good, where the joints show least. `cells` are

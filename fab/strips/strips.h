@@ -42,6 +42,7 @@ struct PieceRules {
     std::span<const Crossing> crossings;  // Of the strip, per cell.
     JointMap* joints = nullptr;           // If given, joints keep away from those in it, and are
                                           // added to it.
+    std::span<const double> threading = {};  // Of the strip: opening_costs; may be empty.
 };
 
 // How far warp strips may run on through critical leaves: they stay single pieces.

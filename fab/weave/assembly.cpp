@@ -136,18 +136,12 @@ public:
 
     Assembly run(std::vector<AssemblyRegion> regions, const geometry::QuadMesh& mesh) {
         plan_.regions = std::move(regions);
-        std::vector<int> region_of_cylinder;
-        for (std::size_t i = 0; i < plan_.regions.size(); ++i) {
-            for (const int cylinder : plan_.regions[i].cylinders) {
-                region_of_cylinder.resize(std::max(region_of_cylinder.size(), at(cylinder) + 1));
-                region_of_cylinder[at(cylinder)] = static_cast<int>(i);
+        const auto members = members_of(plan_.regions, mesh, strips_);
+        region_.resize(strips_.size());
+        for (std::size_t i = 0; i < members.size(); ++i) {
+            for (const int strip : members[i]) {
+                region_[at(strip)] = static_cast<int>(i);
             }
-        }
-        std::vector<std::vector<int>> members(plan_.regions.size());
-        for (std::size_t i = 0; i < strips_.size(); ++i) {
-            const int cylinder = mesh.addresses[at(strips_[i].quads.front())].cylinder;
-            region_.push_back(region_of_cylinder[at(cylinder)]);
-            members[at(region_.back())].push_back(static_cast<int>(i));
         }
         for (std::size_t i = 0; i < members.size(); ++i) {
             weave_region(i, members[i]);

@@ -147,4 +147,22 @@ std::vector<AssemblyRegion> assembly_regions(const geometry::QuadMesh& mesh,
     return RegionFinder(mesh, strips).find(parts);
 }
 
+std::vector<std::vector<int>> members_of(std::span<const AssemblyRegion> regions,
+                                         const geometry::QuadMesh& mesh,
+                                         std::span<const Strip> strips) {
+    std::vector<std::size_t> region_of;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        for (const int cylinder : regions[i].cylinders) {
+            region_of.resize(std::max(region_of.size(), at(cylinder) + 1));
+            region_of[at(cylinder)] = i;
+        }
+    }
+    std::vector<std::vector<int>> members(regions.size());
+    for (std::size_t i = 0; i < strips.size(); ++i) {
+        const int cylinder = mesh.addresses[at(strips[i].quads.front())].cylinder;
+        members[region_of[at(cylinder)]].push_back(static_cast<int>(i));
+    }
+    return members;
+}
+
 }  // namespace leafcutter::fab

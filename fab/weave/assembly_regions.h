@@ -17,4 +17,9 @@ std::vector<AssemblyRegion> assembly_regions(const geometry::QuadMesh& mesh,
                                              std::span<const Strip> strips,
                                              std::span<const Part> parts);
 
+// Per region the strips that lie in it, ascending.
+std::vector<std::vector<int>> members_of(std::span<const AssemblyRegion> regions,
+                                         const geometry::QuadMesh& mesh,
+                                         std::span<const Strip> strips);
+
 }  // namespace leafcutter::fab

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fab/weave/assembly.h"
+#include "fab/weave/openings.h"
 #include "geometry/foliation.h"
 #include "geometry/samples.h"
 #include "geometry/surface_measures.h"
@@ -268,6 +269,57 @@ TEST(PlanAssembly, GluesEveryRimOnceAfterAllElse) {
     EXPECT_TRUE(job.assembly.moves[7].at_start);
     job.assembly.moves.pop_back();
     EXPECT_TRUE(job.fault());
+}
+
+TEST(OpeningCosts, AreWhatThreadingThereCosts) {
+    const auto mesh = test::torus_grid({12, 10}, 50.0, 15.0);
+    const Weave weave = weave_cells(mesh, {});
+    const auto strips = test::whole_strips(mesh, false);
+    const auto costs = opening_costs(mesh, strips, crossings_of(strips, weave));
+    for (std::size_t i = 0; i < strips.size(); ++i) {
+        ASSERT_EQ(costs[i].size(), strips[i].family == Family::Warp ? 12U : 0U);
+    }
+    const auto where = [&](bool dearest) {
+        return Cutting{.opening = [&, dearest](int strip) {
+            const auto& own = costs[static_cast<std::size_t>(strip)];
+            const auto chosen = dearest ? std::max_element(own.begin(), own.end())
+                                        : std::min_element(own.begin(), own.end());
+            return own.empty() ? strip : static_cast<int>(chosen - own.begin());
+        }};
+    };
+    EXPECT_EQ(plan(mesh, weave, where(false)).assembly.threaded, 0);
+    // More than one opening costs nothing, so that joints needn't all lie in one line.
+    EXPECT_GE(std::count(costs.back().begin(), costs.back().end(), 0.0), 2);
+    EXPECT_GT(*std::max_element(costs.back().begin(), costs.back().end()), 2.0);
+}
+
+TEST(OpeningCosts, ConcernOnlyRegionsThatCloseBothWays) {
+    for (const auto& mesh :
+         {test::flat_grid({4, 5}, 10.0), test::cylinder_grid({4, 5}, 20.0, 50.0)}) {
+        const auto strips = test::whole_strips(mesh, false);
+        for (const auto& costs :
+             opening_costs(mesh, strips, crossings_of(strips, weave_cells(mesh, {})))) {
+            EXPECT_TRUE(costs.empty());
+        }
+    }
+}
+
+TEST(OpeningCosts, LeaveNothingToThreadOnAPillowcase) {
+    const auto mesh = sample_grid("sphere", 500.0, geometry::FoliationMode::SpherePillowcase);
+    for (const WeavePattern pattern : kPatterns) {
+        WeaveParams params;
+        params.pattern = pattern;
+        const Weave weave = weave_cells(mesh, params);
+        const auto strips = test::whole_strips(mesh, false);
+        const auto costs = opening_costs(mesh, strips, crossings_of(strips, weave));
+        const Cutting cutting{.opening = [&](int strip) {
+            const auto& own = costs[static_cast<std::size_t>(strip)];
+            return own.empty()
+                       ? 0
+                       : static_cast<int>(std::min_element(own.begin(), own.end()) - own.begin());
+        }};
+        EXPECT_EQ(plan(mesh, weave, cutting).assembly.threaded, 0);
+    }
 }
 
 class CheckAssembly : public ::testing::Test {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "fab/strips/strip.h"
+#include "fab/strips/windings.h"
 #include "geometry/quads/threads.h"
 
 namespace leafcutter::test {
@@ -30,9 +31,19 @@ struct CutStrips {
 inline std::vector<fab::Strip> whole_strips(const geometry::QuadMesh& mesh, bool through) {
     std::vector<fab::Strip> strips;
     for (const fab::Family family : {fab::Family::Weft, fab::Family::Warp}) {
-        const auto threads = geometry::trace_threads(
-            mesh, family,
-            through ? geometry::ThreadEnds::Through : geometry::ThreadEnds::AtCriticalLeaves);
+        std::vector<geometry::Thread> threads;
+        for (auto& thread :
+             geometry::trace_threads(mesh, family,
+                                     through ? geometry::ThreadEnds::Through
+                                             : geometry::ThreadEnds::AtCriticalLeaves)) {
+            if (through) {
+                threads.push_back(std::move(thread));
+                continue;
+            }
+            for (auto& part : fab::parted_windings(mesh, std::move(thread))) {
+                threads.push_back(std::move(part));
+            }
+        }
         const char letter = family == fab::Family::Weft ? 'W' : 'P';
         for (std::size_t i = 0; i < threads.size(); ++i) {
             fab::Strip strip;
