@@ -90,10 +90,17 @@ MarkRoom::MarkRoom(const Piece& piece) : inside_(piece.outline) {
 }
 
 bool MarkRoom::is_free(const MarkShape& shape, double clear_mm, std::optional<int> owner) const {
-    const bool apart = std::all_of(taken_.begin(), taken_.end(), [&](const Taken& taken) {
+    return is_clear(shape, clear_mm, owner) && inside_.contains(shape.contour());
+}
+
+bool MarkRoom::is_clear(const MarkShape& shape, double clear_mm, std::optional<int> owner) const {
+    return std::all_of(taken_.begin(), taken_.end(), [&](const Taken& taken) {
         return (owner && taken.owner == owner) || are_apart(shape, taken.shape, clear_mm);
     });
-    return apart && inside_.contains(shape.contour());
+}
+
+void MarkRoom::give_back(std::size_t all_behind) {
+    taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(all_behind), taken_.end());
 }
 
 void MarkRoom::take(const MarkShape& shape, std::optional<int> owner) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -48,8 +49,15 @@ public:
     // taken, but for what `owner` took.
     bool is_free(const MarkShape& shape, double clear_mm, std::optional<int> owner = {}) const;
 
+    // As is_free, wherever the outline runs.
+    bool is_clear(const MarkShape& shape, double clear_mm, std::optional<int> owner = {}) const;
+
     void take(const MarkShape& shape, std::optional<int> owner = {});
     void take(const Polyline& line);
+
+    // What is taken may be given back, last first.
+    std::size_t taken() const { return taken_.size(); }
+    void give_back(std::size_t all_behind);
 
 private:
     struct Taken {

@@ -47,21 +47,23 @@ Mark line(Operation operation, Polyline path) {
 class Marker {
 public:
     Marker(const Piece& piece, const MarkFacts& facts, const FitParams& fit)
-        : piece_(piece), facts_(facts), fit_(fit), room_(piece), frame_(piece) {}
+        : piece_(piece),
+          facts_(facts),
+          fit_(fit),
+          room_(piece),
+          frame_(piece),
+          has_bar_(frame_.cells(), 0) {}
 
     PieceMarks make() {
         add_scores();
         add_tab_line(PieceEnd::Start);
         add_tab_line(PieceEnd::Finish);
-        if (fit_.cell_marks != CellMarks::None) {
-            reserve_ticks();
-        }
+        before_ticks_ = room_.taken();
+        reserve_ticks();
         if (fit_.labels) {
             add_texts();
         }
-        if (fit_.weave_marks) {
-            add_bars();
-        }
+        add_bars();
         add_rungs();
         return std::move(result_);
     }
@@ -81,8 +83,20 @@ private:
     }
 
     void keep(PlacedText text) {
-        room_.take(text.box);
+        room_.take(text.quiet);
         result_.marks.push_back(std::move(text.mark));
+    }
+
+    // Keeps a text in a cell, unless it leaves no room for the cell's bar.
+    bool keep_in_cell(PlacedText text, std::size_t cell) {
+        const std::size_t before = room_.taken();
+        room_.take(text.quiet);
+        if (needs_bar(cell) && !add_bar(cell)) {
+            room_.give_back(before);
+            return false;
+        }
+        result_.marks.push_back(std::move(text.mark));
+        return true;
     }
 
     void add_scores() {
@@ -133,6 +147,11 @@ private:
 
     // Keeps the room of both ticks of every rung; they are added last, or a whole line instead.
     void reserve_ticks() {
+        ticks_.clear();
+        result_.bare_rungs = 0;
+        if (fit_.cell_marks == CellMarks::None) {
+            return;
+        }
         double last = 0.0;
         for (std::size_t i = 1; i < frame_.cells(); ++i) {
             const double here = frame_.position_mm(i);
@@ -176,13 +195,31 @@ private:
     }
 
     void add_texts() {
-        result_.is_named = add_label(PieceEnd::Start);
-        if (result_.is_named) {
-            add_label(PieceEnd::Finish);
+        result_.is_named = add_start_label();
+        for (const std::string& code : codes()) {
+            if (!result_.is_named || add_label(PieceEnd::Finish, code)) {
+                break;
+            }
         }
         add_joint(PieceEnd::Start, facts_.before);
         add_joint(PieceEnd::Finish, facts_.behind);
         add_names();
+    }
+
+    // A label is worth more than the ticks where it stands.
+    bool add_start_label() {
+        for (const std::string& code : codes()) {
+            if (add_label(PieceEnd::Start, code)) {
+                return true;
+            }
+            room_.give_back(before_ticks_);
+            const bool fits = add_label(PieceEnd::Start, code);
+            reserve_ticks();
+            if (fits) {
+                return true;
+            }
+        }
+        return false;
     }
 
     TextHeights label_heights() const {
@@ -198,18 +235,15 @@ private:
         return {piece_.id + ">", piece_.id, number, number.substr(0, number.find('.'))};
     }
 
-    bool add_label(PieceEnd end) {
-        for (const std::string& code : codes()) {
-            auto label = label_under_others(end, code);
-            if (!label) {
-                label = label_along(end, code);
-            }
-            if (label) {
-                keep(std::move(*label));
-                return true;
-            }
+    bool add_label(PieceEnd end, const std::string& code) {
+        if (add_label_under_others(end, code)) {
+            return true;
         }
-        return false;
+        auto label = label_along(end, code);
+        if (label) {
+            keep(std::move(*label));
+        }
+        return label.has_value();
     }
 
     // The piece's cells from an end on.
@@ -231,7 +265,7 @@ private:
         return count;
     }
 
-    std::optional<PlacedText> label_under_others(PieceEnd end, const std::string& code) const {
+    bool add_label_under_others(PieceEnd end, const std::string& code) {
         TextHeights heights = label_heights();
         heights.least_mm = std::min(kReadableLabelMm, heights.most_mm);
         for (std::size_t i = 0; i < end_cells(end); ++i) {
@@ -239,11 +273,12 @@ private:
             if (facts_.under[cell] == 0) {
                 continue;
             }
-            if (auto label = fit_in_cell(room_, frame_.cell(cell), code, heights)) {
-                return label;
+            auto label = fit_in_cell(room_, frame_.cell(cell), code, heights, TextWay::Along);
+            if (label && keep_in_cell(std::move(*label), cell)) {
+                return true;
             }
         }
-        return std::nullopt;
+        return false;
     }
 
     std::optional<PlacedText> label_along(PieceEnd end, const std::string& code) const {
@@ -251,8 +286,9 @@ private:
         heights.most_mm = std::min(heights.most_mm, kAlongMm);
         const double length = frame_.length_mm();
         if (end == PieceEnd::Finish) {
-            const double from = std::max(length / 2.0, length - 2.0 * kEndMm);
-            return fit_along(room_, frame_, {length, from}, code, heights);
+            const double near = std::max(length / 2.0, length - kEndMm);
+            auto label = fit_along(room_, frame_, {length, near}, code, heights);
+            return label ? label : fit_along(room_, frame_, {length, length / 2.0}, code, heights);
         }
         auto label = fit_along(room_, frame_, {0.0, std::min(length, kEndMm)}, code, heights);
         return label ? label : fit_along(room_, frame_, {0.0, length}, code, heights);
@@ -300,40 +336,43 @@ private:
         }
     }
 
+    std::optional<PlacedText> name_in(std::size_t cell_number) const {
+        const MarkCell cell = frame_.cell(cell_number);
+        TextHeights heights;
+        heights.most_mm = std::max(
+            kSmallestTextMm, std::min(kNameOfLabel * fit_.text_mm, kNamePart * cell.width_mm));
+        return fit_in_cell(room_, cell, facts_.crossing[cell_number], heights);
+    }
+
+    // First where it is readable, then anywhere.
     void add_name(const NameWish& wish, std::vector<char>& named) {
-        std::optional<PlacedText> best;
-        std::size_t best_cell = 0;
-        for (const int wanted : wish) {
-            const auto i = static_cast<std::size_t>(wanted);
-            const MarkCell cell = frame_.cell(i);
-            TextHeights heights;
-            heights.most_mm = std::max(
-                kSmallestTextMm, std::min(kNameOfLabel * fit_.text_mm, kNamePart * cell.width_mm));
-            auto name = fit_in_cell(room_, cell, facts_.crossing[i], heights);
-            if (name && (!best || name->mark.height_mm > best->mark.height_mm)) {
-                best = std::move(name);
-                best_cell = i;
-            }
-            if (best && best->mark.height_mm >= kReadableNameMm) {
-                break;
+        for (const double least : {kReadableNameMm, kSmallestTextMm}) {
+            for (const int wanted : wish) {
+                const auto i = static_cast<std::size_t>(wanted);
+                auto name = name_in(i);
+                if (name && name->mark.height_mm >= least && keep_in_cell(std::move(*name), i)) {
+                    named[i] = 1;
+                    return;
+                }
             }
         }
-        if (best) {
-            keep(std::move(*best));
-            named[best_cell] = 1;
-        }
+    }
+
+    bool needs_bar(std::size_t cell) const {
+        return fit_.weave_marks && facts_.under[cell] != 0 && has_bar_[cell] == 0;
     }
 
     void add_bars() {
         for (std::size_t i = 0; i < frame_.cells(); ++i) {
-            if (facts_.under[i] != 0 && !add_bar(frame_.cell(i))) {
+            if (needs_bar(i) && !add_bar(i)) {
                 ++result_.bare_weave_cells;
             }
         }
     }
 
     // In the cell's middle, or beside what stands there.
-    bool add_bar(const MarkCell& cell) {
+    bool add_bar(std::size_t number) {
+        const MarkCell cell = frame_.cell(number);
         if (cell.length_mm < kMarkPitchMm) {
             return false;
         }
@@ -348,6 +387,7 @@ private:
                     const MarkShape bar(centre - length / 2.0 * rung, centre + length / 2.0 * rung);
                     if (room_.is_free(bar, kBarClearMm)) {
                         keep(bar);
+                        has_bar_[number] = 1;
                         return true;
                     }
                 }
@@ -367,7 +407,9 @@ private:
     const FitParams& fit_;
     MarkRoom room_;
     MarkFrame frame_;
+    std::size_t before_ticks_ = 0;  // Taken of the room.
     std::vector<Ticks> ticks_;
+    std::vector<char> has_bar_;  // Per cell.
     PieceMarks result_;
 };
 

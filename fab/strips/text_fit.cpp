@@ -16,15 +16,21 @@ using Eigen::Vector2d;
 constexpr double kSmaller = 0.85;      // From one height tried to the next.
 constexpr double kTextClearMm = 0.05;  // Between a text's box and other marks.
 constexpr double kTriesAlong = 60.0;
+constexpr double kQuiet = 0.5;  // Of the height, beyond the box.
 
-// Free space about a text.
-double pad_mm(double height_mm) {
-    return std::min(0.25, 0.2 * height_mm);
+// Half the size of a text's box with its margins.
+Vector2d half_box(std::string_view text, double height_mm) {
+    const double beside = std::min(0.5, 0.25 * height_mm);
+    const double above = std::min(0.25, 0.2 * height_mm);
+    return {height_mm * text_width(text) / 2.0 + beside, height_mm / 2.0 + above};
 }
 
-Vector2d half_box(std::string_view text, double height_mm) {
-    const double pad = pad_mm(height_mm);
-    return {height_mm * text_width(text) / 2.0 + pad, height_mm / 2.0 + pad};
+MarkShape quiet_box(std::string_view text,
+                    double height_mm,
+                    const Vector2d& middle,
+                    const Vector2d& along) {
+    return MarkShape::box(middle, along,
+                          half_box(text, height_mm) + Vector2d(kQuiet * height_mm, 0.0));
 }
 
 PlacedText placed(std::string_view text,
@@ -37,13 +43,17 @@ PlacedText placed(std::string_view text,
     mark.height_mm = height_mm;
     mark.at = middle - height_mm / 2.0 * (text_width(text) * along + up);
     mark.angle_deg = std::atan2(along.y(), along.x()) * 180.0 / std::numbers::pi;
-    return {std::move(mark), MarkShape::box(middle, along, half_box(text, height_mm))};
+    return {std::move(mark), MarkShape::box(middle, along, half_box(text, height_mm)),
+            quiet_box(text, height_mm, middle, along)};
 }
 
-// The height at which `text` and its surroundings fill `length_mm`.
+bool has_room(const MarkRoom& room, const PlacedText& text) {
+    return room.is_clear(text.quiet, kTextClearMm) && room.is_free(text.box, kTextClearMm);
+}
+
+// The height at which `text` with its margins fills `length_mm`.
 double height_for(std::string_view text, double length_mm) {
-    const double padded = length_mm / (text_width(text) + 0.4);
-    return 0.2 * padded <= 0.25 ? padded : (length_mm - 0.5) / text_width(text);
+    return std::max(length_mm / (text_width(text) + 0.5), (length_mm - 1.0) / text_width(text));
 }
 
 struct Direction {
@@ -65,9 +75,9 @@ std::optional<PlacedText> fit_at_height(const MarkRoom& room,
     for (const double y : kShifts) {
         for (const double x : kShifts) {
             const Vector2d middle = cell.middle + x * slack_x * way.along + y * slack_y * up;
-            const MarkShape box = MarkShape::box(middle, way.along, half);
-            if (cell.holds(box) && room.is_free(box, kTextClearMm)) {
-                return placed(text, height_mm, middle, way.along);
+            PlacedText candidate = placed(text, height_mm, middle, way.along);
+            if (cell.holds(candidate.box) && has_room(room, candidate)) {
+                return candidate;
             }
         }
     }
@@ -79,9 +89,13 @@ std::optional<PlacedText> fit_at_height(const MarkRoom& room,
 std::optional<PlacedText> fit_in_cell(const MarkRoom& room,
                                       const MarkCell& cell,
                                       std::string_view text,
-                                      const TextHeights& heights) {
+                                      const TextHeights& heights,
+                                      TextWay allowed) {
     std::array<Direction, 2> ways{{{cell.along, cell.length_mm, cell.width_mm},
                                    {cell.across(), cell.width_mm, cell.length_mm}}};
+    if (allowed == TextWay::Along) {
+        ways[1] = ways[0];
+    }
     const auto bound = [&](const Direction& way) {
         return std::min({heights.most_mm, height_for(text, way.length_mm), way.tall_mm});
     };
@@ -121,7 +135,7 @@ std::optional<PlacedText> fit_along(const MarkRoom& room,
             const Vector2d chord = frame.point(s + half) - from;
             const Vector2d middle = (from + chord / 2.0 + frame.point(s)) / 2.0;
             PlacedText candidate = placed(text, height, middle, chord.stableNormalized());
-            if (room.is_free(candidate.box, kTextClearMm)) {
+            if (has_room(room, candidate)) {
                 return candidate;
             }
         }

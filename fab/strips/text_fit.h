@@ -18,18 +18,22 @@ struct TextHeights {
     double most_mm = 4.0;
 };
 
-// A text with its surroundings that must stay free.
+// A text, its box with a margin, which lies inside the outline, and that box longer at both ends:
+// a line there would be read as a letter.
 struct PlacedText {
     Mark mark;
     MarkShape box;
+    MarkShape quiet;
 };
 
-// Text inside one cell, running along the strip or across it from right to left, as high as it can
-// be, as near to the cell's middle as it can be.
+enum class TextWay { Along, AlongOrAcross };  // Across runs from right to left.
+
+// Text inside one cell, as high as it can be, as near to the cell's middle as it can be.
 std::optional<PlacedText> fit_in_cell(const MarkRoom& room,
                                       const MarkCell& cell,
                                       std::string_view text,
-                                      const TextHeights& heights);
+                                      const TextHeights& heights,
+                                      TextWay way = TextWay::AlongOrAcross);
 
 // A part of a piece's middle line, walked from `from_mm` to `to_mm`, either way.
 struct Stretch {
