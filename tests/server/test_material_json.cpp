@@ -1,6 +1,7 @@
 #include <set>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -16,13 +17,12 @@ using ::testing::StartsWith;
 
 constexpr const char* kLaser = R"({"power_percent": 20, "feed_mm_per_min": 1000})";
 
-// A record that is enough, with `more` keys.
-std::string record(const std::string& more = "") {
-    const std::string laser = kLaser;
-    return R"({"id": "mine", "thickness_mm": 0.3, "weight_g_per_m2": 200, "kerf_mm": 0.1,
-        "sheets": [{"width_mm": 500, "height_mm": 300}], "cut": )" +
-           laser + R"(, "score": )" + laser + R"(, "engrave": )" + laser +
-           (more.empty() ? "" : ", " + more) + "}";
+// A record that is enough.
+std::string record() {
+    return fmt::format(R"({{"id": "mine", "thickness_mm": 0.3, "weight_g_per_m2": 200,
+        "kerf_mm": 0.1, "sheets": [{{"width_mm": 500, "height_mm": 300}}],
+        "cut": {0}, "score": {0}, "engrave": {0}}})",
+                       kLaser);
 }
 
 std::string refusal(const std::string& text) {
@@ -99,21 +99,20 @@ TEST(MaterialJson, RefusesByPath) {
     EXPECT_THAT(patched(R"({"cut": null})"), StartsWith("materials[0].cut: is missing"));
     EXPECT_EQ(patched(R"({"like": "paper-7"})"),
               "materials[0].like: there is no material of that id");
-    EXPECT_EQ(refusal("[" + record() + ", " + record() + "]"),
-              "materials[1].id: mine is there twice");
+    EXPECT_EQ(refusal(fmt::format("[{0}, {0}]", record())), "materials[1].id: mine is there twice");
     EXPECT_EQ(refusal(R"({"materials": []})"), "format: must be leafcutter-materials/1");
     EXPECT_EQ(refusal("[5]"), "materials[0]: must be an object");
     EXPECT_THAT(refusal("[{]"), StartsWith("materials: no JSON"));
-    EXPECT_EQ(refusal("[" + record() + "]"), "taken");
+    EXPECT_EQ(refusal(fmt::format("[{}]", record())), "taken");
 }
 
 TEST(MaterialJson, RefusesMachinesByPath) {
-    const std::string laser = kLaser;
-    const std::string settings = R"({"machine": "a", "cut": )" + laser + R"(, "score": )" + laser +
-                                 R"(, "engrave": )" + laser + "}";
-    EXPECT_EQ(patched((R"({"settings": [)" + settings + "]}").c_str()), "taken");
-    EXPECT_EQ(patched((R"({"settings": [)" + settings + "," + settings + "]}").c_str()),
-              "materials[0].settings[1].machine: is there twice");
+    const std::string settings =
+        fmt::format(R"({{"machine": "a", "cut": {0}, "score": {0}, "engrave": {0}}})", kLaser);
+    const std::string one = fmt::format(R"({{"settings": [{}]}})", settings);
+    EXPECT_EQ(patched(one.c_str()), "taken");
+    const std::string two = fmt::format(R"({{"settings": [{0}, {0}]}})", settings);
+    EXPECT_EQ(patched(two.c_str()), "materials[0].settings[1].machine: is there twice");
     EXPECT_THAT(patched(R"({"settings": [{"machine": "a"}]})"),
                 StartsWith("materials[0].settings[0].cut: is missing"));
 }

@@ -36,7 +36,7 @@ std::string name_of(const JobRecord& job, const json& body) {
         name = job.name + ":";
         for (std::size_t i = 0; i < std::min(kMostNamed, pieces->size()); ++i) {
             const json& piece = (*pieces)[i];
-            name += " " + (piece.is_string() ? piece.get<std::string>() : std::string("?"));
+            name += fmt::format(" {}", piece.is_string() ? piece.get<std::string>() : "?");
         }
         name += pieces->size() > kMostNamed ? " …" : "";
     }
