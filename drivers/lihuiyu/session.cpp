@@ -42,10 +42,14 @@ bool LihuiyuSession::may_close() const {
 
 // ---- Commands ----
 
-void LihuiyuSession::require_idle(std::string_view what) const {
+void LihuiyuSession::require_connected(std::string_view what) const {
     if (gone_ || !attached_) {
         throw Refused(fmt::format("{}: the machine is not connected", what));
     }
+}
+
+void LihuiyuSession::require_idle(std::string_view what) const {
+    require_connected(what);
     if (job_runs()) {
         throw Refused(fmt::format("{}: a job is running", what));
     }
@@ -54,8 +58,9 @@ void LihuiyuSession::require_idle(std::string_view what) const {
     }
 }
 
-void LihuiyuSession::require_homed() const {
-    if (!homed_) {
+void LihuiyuSession::require_homed(std::string_view what) const {
+    require_connected(what);
+    if (!homed_ && !homing_) {
         throw NotHomed(std::string(kNotHomed));
     }
 }
@@ -65,8 +70,8 @@ void LihuiyuSession::queue(const Payload& payload, Purpose purpose) {
 }
 
 void LihuiyuSession::start(std::string_view program) {
+    require_homed("start");
     require_idle("start");
-    require_homed();
     const std::vector<CutMove> moves =
         is_egv(program) ? read_egv(program, options_.speed, options_.bed) : read_cut_moves(program);
     const EncodedJob job = encode_job(moves, place_, options_);
@@ -129,8 +134,8 @@ void LihuiyuSession::unlock() {
 }
 
 void LihuiyuSession::jog(const Jog& jog) {
+    require_homed("jog");
     require_idle("jog");
-    require_homed();
     const LihuiyuBed& bed = options_.bed;
     const StepPlace to{place_.x + std::lround(jog.dx_mm * bed.steps_per_mm),
                        place_.y - std::lround(jog.dy_mm * bed.steps_per_mm)};

@@ -70,8 +70,9 @@ private:
     };
 
     bool job_runs() const { return progress_.outcome == JobOutcome::Running; }
+    void require_connected(std::string_view what) const;
     void require_idle(std::string_view what) const;
-    void require_homed() const;
+    void require_homed(std::string_view what) const;
     void queue(const Payload& payload, Purpose purpose);
 
     // Wire: session_events.cpp

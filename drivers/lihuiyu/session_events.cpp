@@ -103,9 +103,9 @@ void LihuiyuSession::write(const Outgoing& packet) {
 }
 
 std::optional<LihuiyuSession::Outgoing> LihuiyuSession::next_packet() {
-    const bool begun = progress_.lines_sent > 0;
     if (job_runs() && holding_ != held_) {
-        if (begun && !(finishing_ && now_ > motion_end_)) {
+        const bool works = progress_.lines_sent > 0 && !(finishing_ && now_ > motion_end_);
+        if (board_holds_ || (holding_ && works)) {
             return Outgoing{
                 make_payload("PN"), holding_ ? Purpose::Hold : Purpose::Resume, 0.0, {}};
         }
@@ -185,11 +185,11 @@ void LihuiyuSession::confirm() {
             ++progress_.lines_acknowledged;
             break;
         case Purpose::Hold:
-            held_ = true;
+            held_ = board_holds_ = true;
             held_since_ = now_;
             break;
         case Purpose::Resume:
-            held_ = false;
+            held_ = board_holds_ = false;
             motion_end_ += now_ - held_since_;
             break;
         case Purpose::Home:

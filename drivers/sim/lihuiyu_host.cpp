@@ -9,8 +9,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// At speed 0 so many simulated seconds pass with every word of the sender, or while it is silent for
-// kIdleWait: it sees what happens in between, however slow it is.
+// At speed 0 so many simulated seconds pass with every word of the sender, or while it is silent
+// for kIdleWait: it sees what happens in between, however slow it is.
 constexpr double kFastStep_s = 0.1;
 constexpr std::chrono::milliseconds kBusyWait{1};
 constexpr std::chrono::milliseconds kIdleWait{60};
