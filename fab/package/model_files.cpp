@@ -1,6 +1,7 @@
 #include "fab/package/model_files.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -13,7 +14,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Strips that are bent most come first; more of them nobody reads.
+// More of them nobody reads.
 constexpr std::size_t kMostBends = 12;
 
 json family_record(const FamilyThickness& family) {
@@ -45,7 +46,8 @@ json bend_record(const Strip& strip, const StripBend& bend) {
             {"too_short", bend.too_short}};
 }
 
-// Those that can't be made, then those that are bent most.
+// Those that can't be made, then those that the surface bends most: the way over and under bends
+// all alike.
 std::vector<std::size_t> worst_bends(const std::vector<StripBend>& bends) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < bends.size(); ++i) {
@@ -53,12 +55,14 @@ std::vector<std::size_t> worst_bends(const std::vector<StripBend>& bends) {
             order.push_back(i);
         }
     }
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-        const auto rank = [&](std::size_t k) {
-            return !(bends[k].too_tight || bends[k].too_short);
-        };
-        return rank(i) != rank(j) ? rank(i) < rank(j) : bends[i].radius_mm < bends[j].radius_mm;
-    });
+    const auto rank = [&](std::size_t i) {
+        const StripBend& bend = bends[i];
+        const double surface = bend.surface_radius_mm;
+        return bend.too_tight || bend.too_short ? std::pair(0, bend.radius_mm)
+                                                : std::pair(surface > 0.0 ? 1 : 2, surface);
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t i, std::size_t j) { return rank(i) < rank(j); });
     order.resize(std::min(order.size(), kMostBends));
     return order;
 }
