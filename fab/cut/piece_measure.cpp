@@ -23,6 +23,7 @@ constexpr double kTickReachMm = 3.0;     // From the end.
 constexpr double kTickAsideMm = 0.5;     // From the rung,
 constexpr double kTickAsidePart = 0.25;  // and in parts of the way to the next one.
 constexpr double kLeastTickMm = 0.3;
+constexpr double kLeastCrossing = 0.3;  // Sine of the angle between a tick and a side.
 constexpr double kLookMm = 1.0;  // How far from the planned end its tick may meet the contour.
 
 struct Tick {
@@ -127,10 +128,18 @@ std::optional<Vector2d> meeting(const Tick& tick, const Ring& contour, const Vec
         const Vector2d& to = contour[(i + 1) % contour.size()];
         const double a = turn_of(direction, from - tick.from);
         const double b = turn_of(direction, to - tick.from);
-        if ((a > 0.0) == (b > 0.0) || a == b) {
+        // An edge along the tick is where a tab begins, no side of the strip.
+        const double length = (to - from).norm();
+        if (std::abs(b - a) < kLeastCrossing * length || length == 0.0) {
             continue;
         }
-        const Vector2d point = from + a / (a - b) * (to - from);
+        // Rounding may let a tick's line just miss the end of the edge that it points at.
+        const double t = a / (a - b);
+        const double slack = kTickCornerMm / length;
+        if (t < -slack || t > 1.0 + slack) {
+            continue;
+        }
+        const Vector2d point = from + std::clamp(t, 0.0, 1.0) * (to - from);
         if ((point - near).norm() < kLookMm &&
             (!best || (point - near).squaredNorm() < (*best - near).squaredNorm())) {
             best = point;
