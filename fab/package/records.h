@@ -21,6 +21,10 @@ nlohmann::ordered_json input_record(const InputFacts& input);
 nlohmann::ordered_json nesting_record(const Layout& layout);
 nlohmann::ordered_json cut_record(const JobResult& job);
 
+// Floats by number; how many moves lay, thread and join.
+nlohmann::ordered_json floats_record(const Floats& floats);
+nlohmann::ordered_json assembly_record(const Assembly& assembly);
+
 // What cutting pieces of this job again needs to know: bill, materials, machine, parameters.
 void add_makings(const JobResult& job, nlohmann::ordered_json& file);
 

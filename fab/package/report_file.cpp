@@ -261,6 +261,13 @@ json strips_summary_json(const JobResult& job) {
             {"weave_seams", job.weave.seams.size()}};
 }
 
+json weave_summary_json(const JobResult& job) {
+    return {{"seams", job.weave.seams.size()},
+            {"seam_mm", job.weave.seam_mm},
+            {"floats", floats_record(job.weave.floats)},
+            {"assembly", assembly_record(job.assembly)}};
+}
+
 json certificate_json(const Certificate& certificate) {
     return {{"holds", certificate.holds},
             {"largest_deviation_relative", certificate.largest_deviation_relative},
@@ -296,20 +303,15 @@ std::string report_json(const JobResult& job) {
     for (const std::string& warning : job.warnings) {
         warnings.push_back(warning);
     }
-    json file = {{"format", "leafcutter-report/1"},
-                 {"input", input_record(job.input)},
-                 {"surface", surface_json(job)},
-                 {"topology", topology_json(job)},
-                 {"foliation", foliation_json(job)},
-                 {"quality", qualities_json(job)},
-                 {"strips", strips_summary_json(job)},
-                 {"nesting", nesting_record(job.layout)},
-                 {"cut", cut_record(job)},
-                 {"thickness", thickness_record(job)},
-                 {"woven", woven_record(job)},
-                 {"timings_s", std::move(timings)},
-                 {"certificate", certificate_json(job.certificate)},
-                 {"warnings", std::move(warnings)}};
+    json file = {
+        {"format", "leafcutter-report/1"},       {"input", input_record(job.input)},
+        {"surface", surface_json(job)},          {"topology", topology_json(job)},
+        {"foliation", foliation_json(job)},      {"quality", qualities_json(job)},
+        {"strips", strips_summary_json(job)},    {"weave", weave_summary_json(job)},
+        {"nesting", nesting_record(job.layout)}, {"cut", cut_record(job)},
+        {"thickness", thickness_record(job)},    {"woven", woven_record(job)},
+        {"timings_s", std::move(timings)},       {"certificate", certificate_json(job.certificate)},
+        {"warnings", std::move(warnings)}};
     add_makings(job, file);
     if (job.quads.planarisation) {
         file["quality"]["planarisation"] = planarisation_json(*job.quads.planarisation);

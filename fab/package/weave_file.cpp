@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fab/package/package_files.h"
+#include "fab/package/records.h"
 
 namespace leafcutter::fab {
 
@@ -150,21 +151,26 @@ json family_floats_json(const FamilyFloats& before, const FamilyFloats& after) {
             {"mean_before", before.mean},     {"over_limit_before", before.over_limit}};
 }
 
-json floats_json(const Floats& floats) {
+json too_long_json(const Floats& floats) {
     json too_long = json::array();
     for (const Float& left : floats.too_long) {
         too_long.push_back({{"family", left.family == Family::Weft ? "weft" : "warp"},
                             {"on_top", left.on_top},
                             {"quads", left.quads}});
     }
+    return too_long;
+}
+
+}  // namespace
+
+nlohmann::ordered_json floats_record(const Floats& floats) {
     return {{"limit", floats.limit ? json(*floats.limit) : json()},
             {"weft", family_floats_json(floats.weft_before, floats.weft)},
             {"warp", family_floats_json(floats.warp_before, floats.warp)},
-            {"flips", floats.flips},
-            {"too_long", std::move(too_long)}};
+            {"flips", floats.flips.size()}};
 }
 
-json assembly_json(const Assembly& assembly) {
+nlohmann::ordered_json assembly_record(const Assembly& assembly) {
     return {{"moves", assembly.moves.size()},
             {"laid", assembly.laid},
             {"threaded", assembly.threaded},
@@ -175,10 +181,11 @@ json assembly_json(const Assembly& assembly) {
             {"tucked_joints", assembly.tucked_joints}};
 }
 
-}  // namespace
-
 std::string weave_json(const JobResult& job) {
     const WeaveWriter writer(job);
+    json floats = floats_record(job.weave.floats);
+    floats["flips"] = job.weave.floats.flips;
+    floats["too_long"] = too_long_json(job.weave.floats);
     json strips = json::array();
     for (const Strip& strip : job.strips) {
         strips.push_back(strip.id);
@@ -189,13 +196,13 @@ std::string weave_json(const JobResult& job) {
                        {"seams", job.weave.seams},
                        {"seam_mm", job.weave.seam_mm},
                        {"shortest_seam_proven", job.weave.shortest},
-                       {"floats", floats_json(job.weave.floats)},
+                       {"floats", std::move(floats)},
                        {"strips", std::move(strips)},
                        {"crossing_fields",
                         {"weft", "warp", "x_mm", "y_mm", "z_mm", "normal_x", "normal_y", "normal_z",
                          "weft_x", "weft_y", "weft_z", "warp_x", "warp_y", "warp_z"}},
                        {"crossings", writer.crossings()},
-                       {"assembly", assembly_json(job.assembly)},
+                       {"assembly", assembly_record(job.assembly)},
                        {"regions", writer.regions()},
                        {"moves", writer.moves()}};
     return file.dump() + "\n";

@@ -71,10 +71,11 @@ TEST(Params, TakeEveryKeyOfTheDocumentation) {
 TEST(Params, ComeBackFromTheirJson) {
     const auto json = parse_params_text(R"({"scale": {"longest_side_mm": 120.5},
         "foliation": {"corners": [0, 5, 7, 9]}, "grid": {"rows": 4, "cylinders": [{"cols": 6}]},
-        "weave": {"pattern": "satin-5"}, "nesting": {"seed": 77}})");
+        "weave": {"pattern": "satin-5", "max_float": 6}, "nesting": {"seed": 77}})");
     const auto whole = params_to_json(params_from_json(json));
     EXPECT_EQ(params_to_json(params_from_json(whole)), whole);
     EXPECT_EQ(whole["weave"]["pattern"], "satin-5");
+    EXPECT_EQ(whole["weave"]["max_float"], 6);
     EXPECT_EQ(whole["grid"]["rows"], 4);
     EXPECT_EQ(whole["foliation"]["corners"], (nlohmann::json{0, 5, 7, 9}));
 }
@@ -124,6 +125,7 @@ TEST(Params, RefuseImpossibleValuesByFullPath) {
     EXPECT_THAT(refusal(R"({"weave": {"pattern": [[0, 1], [1]]}})"),
                 StartsWith("weave.pattern[1]:"));
     EXPECT_THAT(refusal(R"({"weave": {"pattern": [[0, 2]]}})"), StartsWith("weave.pattern[0]:"));
+    EXPECT_EQ(refusal(R"({"weave": {"max_float": 0}})"), "weave.max_float: must be >= 1");
     EXPECT_THAT(refusal(R"({"scale": {"units": "mm", "longest_side_mm": 3}})"),
                 StartsWith("scale.units:"));
     EXPECT_THAT(refusal(R"({"nesting": {"seed": 99999999999}})"), StartsWith("nesting.seed:"));
