@@ -15,11 +15,11 @@ using Eigen::Vector2d;
 // Joints of neighbours this many cells apart don't look lined up.
 constexpr int kApart = 5;
 
-constexpr double kSeen = 1.0;       // All of the tab lies where the strip is on top.
+constexpr double kSeen = 1.5;       // All of the tab lies where the strip is on top.
 constexpr double kTurnDeg = 20.0;   // Costs 1.
 constexpr double kKink = 1.5;       // An irregular vertex at the joint.
 constexpr double kKinkNear = 0.75;  // One at the far end of a cell beside it.
-constexpr double kLinedUp = 1.25;
+constexpr double kLinedUp = 1.0;
 
 Vector2d middle(const Unfolded& flat, std::size_t rung) {
     return (flat.left[rung] + flat.right[rung]) / 2.0;

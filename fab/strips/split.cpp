@@ -100,8 +100,9 @@ public:
           whole_(unfold(mesh, cells, {0, total_ + (strip.closed ? 1 : beyond_)})) {
         at_.push_back(0.0);
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            steps_.push_back((middle(whole_, i + 1) - middle(whole_, i)).norm());
-            at_.push_back(at_.back() + steps_.back() + extra(static_cast<int>(i)));
+            steps_.push_back((middle(whole_, i + 1) - middle(whole_, i)).norm() +
+                             extra(static_cast<int>(i)));
+            at_.push_back(at_.back() + steps_.back());
         }
     }
 
@@ -216,7 +217,7 @@ private:
             tabs.end = std::max(tabs.end, kLeastArrowMm);
         }
         if (options_.joint == Joint::Cell && (!last || beyond_ > 0)) {
-            tabs.end = step(first + count) + 1e-6;
+            tabs.end = step(first + count);
         }
         if (last && beyond_ == 0 && !strip_.glued_end.has_tab) {
             tabs.end = 0.0;
@@ -349,8 +350,8 @@ private:
     int total_;
     int beyond_;  // Cells past the end that a tab may lie on.
     Unfolded whole_;
-    std::vector<double> steps_;  // Length of the middle line in each cell,
-    std::vector<double> at_;     // and before it, with crimp.
+    std::vector<double> steps_;  // Length of the middle line in each cell, with crimp,
+    std::vector<double> at_;     // and before it.
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "fab/strips/overlap.h"
 #include "fab/strips/sheet_fit.h"
 #include "fab/strips/strips.h"
+#include "fab/weave/thickness.h"
 #include "tests/support/quad_grids.h"
 
 namespace leafcutter::fab {
@@ -29,8 +30,9 @@ Made make(const geometry::QuadMesh& mesh,
     Made made;
     made.strips = make_strips(mesh, ColumnRuns::PerCylinder);
     const Crossings crossings = crossings_of(made.strips, weave_cells(mesh, {}));
+    JointMap joints(mesh);
     for (std::size_t i = 0; i < made.strips.size(); ++i) {
-        const PieceRules rules{fit, limits, crossings[i]};
+        const PieceRules rules{fit, limits, crossings[i], &joints};
         for (Piece& piece : make_pieces(made.strips[i], mesh, rules, made.warnings)) {
             made.pieces.push_back(std::move(piece));
         }
@@ -116,14 +118,24 @@ TEST(MakePieces, TakesTheClearanceOffBothLongSides) {
     }
 }
 
-TEST(MakePieces, LengthensCellsByTheCrimpFormula) {
+TEST(MakePieces, LengthensCellsByTheirCrimp) {
     FitParams fit;
-    fit.clearance_mm = 0.0;
-    const PieceLimits thick{.usable_sheet = {590.0, 390.0}, .thickness_mm = 2.0};
-    const Made made = make(test::flat_grid({3, 6}, 10.0), fit, thick);
-    for (const Piece& piece : made.pieces) {
-        const double length = std::hypot(10.0, 2.0) * piece.cell_count;
-        EXPECT_NEAR(area(piece.outline), 10.0 * length, 1e-3) << piece.id;
+    const PieceLimits thick{.usable_sheet = {590.0, 390.0}, .thickness_mm = 1.0, .crossed_mm = 0.6};
+    const auto mesh = test::flat_grid({3, 6}, 10.0);
+    const std::vector<Strip> strips = make_strips(mesh, ColumnRuns::PerCylinder);
+    const Crossings crossings = crossings_of(strips, weave_cells(mesh, {}));
+    const Made made = make(mesh, fit, thick);
+    const CrimpRule rule{.own_mm = 1.0, .crossed_mm = 0.6, .gap_mm = 0.4};
+    for (std::size_t i = 0; i < made.pieces.size(); ++i) {
+        const Piece& piece = made.pieces[i];
+        const std::vector<double> lengths(static_cast<std::size_t>(piece.cell_count), 10.0);
+        double length = 10.0 * piece.cell_count;
+        for (const double extra : crimp_extra_mm(crossings[i], lengths, rule, false)) {
+            EXPECT_LT(extra, 1.0);
+            length += extra;
+        }
+        EXPECT_GT(length, 10.0 * piece.cell_count + 0.1);
+        EXPECT_NEAR(area(piece.outline), 9.6 * length, 1e-3) << piece.id;
     }
 }
 
@@ -206,31 +218,6 @@ TEST(MakePieces, MakesSoundOutlinesOfThinAndBumpyCells) {
         const auto mesh = test::bumpy_grid({10, 40}, 8.0, seed);
         expect_sound(mesh, make(mesh, {}));
     }
-}
-
-TEST(MakePieces, ScoresCellsThatFoldSharply) {
-    auto mesh = test::flat_grid({1, 3}, 10.0);
-    mesh.vertices[1].z() = 5.0;
-    const Made made = make(mesh, {});
-    const auto scores = [](const Piece& piece) {
-        return std::count_if(piece.marks.begin(), piece.marks.end(),
-                             [](const Mark& mark) { return mark.operation == Operation::Score; });
-    };
-    EXPECT_EQ(scores(made.pieces[0]), 2);
-    EXPECT_EQ(scores(made.pieces[3]), 0);
-}
-
-TEST(MakePieces, EngravesTheIdUnlessTheStripIsTooNarrow) {
-    FitParams fit;
-    const Made wide = make(test::flat_grid({2, 4}, 10.0), fit);
-    for (const Piece& piece : wide.pieces) {
-        EXPECT_TRUE(std::any_of(piece.marks.begin(), piece.marks.end(),
-                                [&](const Mark& mark) { return mark.text == piece.id; }));
-    }
-    const Made narrow = make(test::flat_grid({2, 4}, 1.5), fit);
-    EXPECT_EQ(narrow.warnings.size(), narrow.strips.size());
-    fit.labels = false;
-    EXPECT_TRUE(make(test::flat_grid({2, 4}, 1.5), fit).warnings.empty());
 }
 
 TEST(IsSimple, RefusesTouchingCrossingAndClockwiseRings) {
