@@ -17,6 +17,9 @@ using Eigen::Vector3d;
 // Radii that are less than the allowed one by this part of it are equal to it.
 constexpr double kRounding = 1e-6;
 
+// Curvature, 1/mm: a radius of ten kilometres is straight.
+constexpr double kStraight = 1e-7;
+
 // Strips give a little lengthwise: a hole may be narrower by this part of it.
 constexpr double kGive = 0.05;
 
@@ -106,7 +109,7 @@ CrimpRule rule_of(const ThicknessRules& rules, Family family) {
 }
 
 double radius_of(double curvature) {
-    return curvature > 0.0 ? 1.0 / curvature : 0.0;
+    return curvature > kStraight ? 1.0 / curvature : 0.0;
 }
 
 // The tightest bend so far, and where.
