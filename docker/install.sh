@@ -8,7 +8,7 @@
 set -eu
 
 RUN_PACKAGES="libopenmesh1 libcholmod3 libopenblas0-pthread libcpp-httplib0.11 libspdlog1.10 libfmt9
-    libsqlite3-0 libtomlplusplus3 libpolyclipping22 libhpdf-2.3.0 libssl3 zlib1g"
+    libsqlite3-0 libtomlplusplus3 libpolyclipping22 libhpdf-2.3.0 libssl3 libusb-1.0-0 zlib1g"
 BUILD_PACKAGES="g++ cmake ninja-build make pkg-config ccache git ca-certificates
     libopenmesh-dev libeigen3-dev libsuitesparse-dev libopenblas-pthread-dev
     nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev

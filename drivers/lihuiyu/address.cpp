@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kScheme = "lihuiyu:";
 constexpr std::string_view kSimulated = "sim:lihuiyu";
-constexpr double kInch_mm = 25.4;
+constexpr double kInchMm = 25.4;
 
 template <typename Number>
 Number read_number(std::string_view key, std::string_view value) {
@@ -84,7 +84,7 @@ bool set_lihuiyu_option(std::string_view key, std::string_view value, EncoderOpt
     } else if (key == "down") {
         bed.origin_down_mm = read_number<double>(key, value);
     } else if (key == "dpi") {
-        bed.steps_per_mm = read_positive(key, value) / kInch_mm;
+        bed.steps_per_mm = read_positive(key, value) / kInchMm;
     } else {
         return false;
     }

@@ -16,9 +16,9 @@ namespace leafcutter::drivers {
 
 namespace {
 
-constexpr long kMostStepsOfRun = 255 * 6;  // Of one token: it has to fit into a packet.
-constexpr long kShortTravel = 100;         // Steps: not worth a rapid move.
-constexpr double kSpeedWithoutCut_mm_per_s = 20.0;
+constexpr long kMostStepsOfRun = 6L * 255;  // Of one token: it has to fit into a packet.
+constexpr long kShortTravel = 100;          // Steps: not worth a rapid move.
+constexpr double kSpeedWithoutCutMmPerS = 20.0;
 
 class Encoder {
 public:
@@ -43,7 +43,7 @@ public:
     EncodedJob finish() {
         if (!speed_ || !(at_ == goal_)) {
             flush_run();
-            begin_section(speed_.value_or(kSpeedWithoutCut_mm_per_s), 0);
+            begin_section(speed_.value_or(kSpeedWithoutCutMmPerS), 0);
         }
         flush_run();
         EncodedJob job = packer_.finish();

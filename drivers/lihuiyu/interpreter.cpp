@@ -167,6 +167,28 @@ void LihuiyuInterpreter::letter(char byte) {
         case 'U':
             laser(byte == 'D');
             break;
+        case 'C':
+            vector_ = true;
+            break;
+        case 'V':
+            speed_text_.assign(1, 'V');
+            reading_speed_ = true;
+            digits_ = Digits::Speed;
+            break;
+        case 'G':
+            complain("raster steps (G) are not for cutting");
+            digits_ = Digits::Ignored;
+            break;
+        case 'W':
+            digits_ = Digits::Ignored;  // Power, of new M3 boards alone.
+            break;
+        default:
+            mode_letter(byte);
+    }
+}
+
+void LihuiyuInterpreter::mode_letter(char byte) {
+    switch (byte) {
         case 'N':
             skip_blank();
             break;
@@ -188,21 +210,6 @@ void LihuiyuInterpreter::letter(char byte) {
         case '@':
             resetting_ = true;
             finishing_ = false;
-            break;
-        case 'C':
-            vector_ = true;
-            break;
-        case 'V':
-            speed_text_.assign(1, 'V');
-            reading_speed_ = true;
-            digits_ = Digits::Speed;
-            break;
-        case 'G':
-            complain("raster steps (G) are not for cutting");
-            digits_ = Digits::Ignored;
-            break;
-        case 'W':
-            digits_ = Digits::Ignored;  // Power, of new M3 boards alone.
             break;
         default:
             complain(shown(byte) + " is no LHYMICRO-GL");

@@ -69,6 +69,7 @@ private:
 
     void digit(char byte);
     void letter(char byte);
+    void mode_letter(char byte);
     void distance_letter(char byte);
     void direction(char byte);
     void laser(bool on);

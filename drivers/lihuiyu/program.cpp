@@ -13,8 +13,8 @@ namespace leafcutter::drivers {
 
 namespace {
 
-constexpr double kInch_mm = 25.4;
-constexpr double kArcTolerance_mm = 0.0127;  // Half a step of 1/1000 inch.
+constexpr double kInchMm = 25.4;
+constexpr double kArcToleranceMm = 0.0127;  // Half a step of 1/1000 inch.
 constexpr double kPi = 3.14159265358979323846;
 
 struct Place {
@@ -90,7 +90,7 @@ private:
         if (code == 0.0 || code == 1.0 || code == 2.0 || code == 3.0) {
             motion_ = static_cast<int>(code);
         } else if (code == 20.0 || code == 21.0) {
-            unit_ = code == 20.0 ? kInch_mm : 1.0;
+            unit_ = code == 20.0 ? kInchMm : 1.0;
         } else if (code == 90.0 || code == 91.0) {
             relative_ = code == 91.0;
         } else if (code != 17.0 && code != 40.0 && code != 49.0 && code != 54.0 && code != 80.0 &&
@@ -146,7 +146,7 @@ private:
         while (clockwise ? turn >= -1e-9 : turn <= 1e-9) {
             turn += clockwise ? -2.0 * kPi : 2.0 * kPi;
         }
-        const double ratio = std::min(kArcTolerance_mm / std::max(radius, 1e-9), 1.0);
+        const double ratio = std::min(kArcToleranceMm / std::max(radius, 1e-9), 1.0);
         const double step = 2.0 * std::acos(1.0 - ratio);
         const int pieces = static_cast<int>(std::ceil(std::abs(turn) / step));
         for (int piece = 1; piece < pieces; ++piece) {

@@ -209,8 +209,8 @@ void LihuiyuSession::lose_link(const std::string& reason) {
 }
 
 std::string_view LihuiyuSession::last_words() const {
-    static const std::string kStop = wire_bytes(make_payload("I"));
-    return kStop;
+    static const std::string stop = wire_bytes(make_payload("I"));
+    return stop;
 }
 
 std::string LihuiyuSession::take_output() {

@@ -24,7 +24,7 @@ constexpr milliseconds kStopRepeat{200};
 constexpr seconds kStopTime{5};
 constexpr seconds kEndMargin{3};
 constexpr seconds kLongestHoming{60};
-constexpr double kSlowestHoming_mm_per_s = 30.0;
+constexpr double kSlowestHomingMmPerS = 30.0;
 
 Session::Time::duration to_duration(double time_s) {
     return std::chrono::duration_cast<Session::Time::duration>(
@@ -306,7 +306,7 @@ void LihuiyuSession::watch_home() {
         return;
     }
     const double way_mm = std::max(options_.bed.width_mm, options_.bed.height_mm);
-    const auto slowest = to_duration(2.0 + way_mm / kSlowestHoming_mm_per_s);
+    const auto slowest = to_duration(2.0 + way_mm / kSlowestHomingMmPerS);
     const bool stands = !status_is(BoardStatus::Busy) && answered_ > asked_at_packet_;
     if (stands && (was_busy_ || now_ - *homing_since_ > slowest)) {
         homing_ = moving_by_hand_ = false;

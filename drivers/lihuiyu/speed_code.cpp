@@ -11,8 +11,8 @@ namespace leafcutter::drivers {
 
 namespace {
 
-constexpr double kStep_mm = 25.4;  // Times steps per ms: mm/s, at 1/1000 inch per step.
-constexpr double kSlow_mm_per_s = 7.0;
+constexpr double kStepMm = 25.4;  // Times steps per ms: mm/s, at 1/1000 inch per step.
+constexpr double kSlowMmPerS = 7.0;
 constexpr double kDiagonalRatio = 0.261199033289;
 constexpr int kMostDiagonalSteps = 128;
 constexpr int kCounts = 65536;
@@ -35,7 +35,7 @@ bool slows_diagonals(LihuiyuBoard board) {
 bool counts_slowly(LihuiyuBoard board, double mm_per_s) {
     const bool knows =
         board == LihuiyuBoard::M2 || board == LihuiyuBoard::M3 || board == LihuiyuBoard::B2;
-    return knows && mm_per_s < kSlow_mm_per_s;
+    return knows && mm_per_s < kSlowMmPerS;
 }
 
 int acceleration_for(double mm_per_s) {
@@ -105,17 +105,17 @@ LihuiyuBoard parse_lihuiyu_board(std::string_view name) {
 }
 
 std::string encode_speed(const SpeedModel& model, double mm_per_s) {
-    if (!(mm_per_s > 0.0) || mm_per_s > kFastestCut_mm_per_s) {
+    if (!(mm_per_s > 0.0) || mm_per_s > kFastestCutMmPerS) {
         refuse(model.board, mm_per_s,
-               fmt::format("cutting speeds are above 0 and up to {:g} on", kFastestCut_mm_per_s));
+               fmt::format("cutting speeds are above 0 and up to {:g} on", kFastestCutMmPerS));
     }
     const int acceleration = acceleration_for(mm_per_s);
     const bool slowly = counts_slowly(model.board, mm_per_s);
     const Equation equation = equation_of(model, acceleration, slowly);
-    const double period_ms = kStep_mm / mm_per_s;
+    const double period_ms = kStepMm / mm_per_s;
     const double value = kCounts - (equation.b + equation.m * period_ms);
     if (value < 0.0) {
-        const double slowest = std::ceil(100.0 * kStep_mm * equation.m / (kCounts - equation.b));
+        const double slowest = std::ceil(100.0 * kStepMm * equation.m / (kCounts - equation.b));
         refuse(model.board, mm_per_s,
                fmt::format("there is no code for it; the next faster speed is {:.2f} on",
                            slowest / 100.0));
@@ -155,7 +155,7 @@ std::optional<DecodedSpeed> decode_speed(const SpeedModel& model, std::string_vi
     }
     // Nine zeros stand for no compensation.
     const bool slows = digits.size() == 16 && number_at(digits, 7, 3) != 0;
-    return DecodedSpeed{kStep_mm * equation.m / ticks, acceleration, slows};
+    return DecodedSpeed{kStepMm * equation.m / ticks, acceleration, slows};
 }
 
 }  // namespace leafcutter::drivers

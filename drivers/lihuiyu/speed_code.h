@@ -36,7 +36,7 @@ struct SpeedModel {
     double slope = 1.0;
 };
 
-inline constexpr double kFastestCut_mm_per_s = 240.0;  // Above it the maker's software gives up.
+inline constexpr double kFastestCutMmPerS = 240.0;  // Above it the maker's software gives up.
 
 // Throws std::invalid_argument for a speed that the board has no code for, naming the nearest.
 std::string encode_speed(const SpeedModel& model, double mm_per_s);

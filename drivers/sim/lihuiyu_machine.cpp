@@ -15,9 +15,9 @@ namespace leafcutter::drivers {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-constexpr double kFinishedPulse_s = 0.39;
-constexpr double kBusyFault_s = 30.0;
-constexpr double kInchPerStep_mm = 0.0254;  // What speed codes take a step for.
+constexpr double kFinishedPulseS = 0.39;
+constexpr double kBusyFaultS = 30.0;
+constexpr double kNominalStepMm = 0.0254;  // What speed codes take a step for.
 constexpr StepPlace kPowerUpPlace{4000, 3000};
 
 using Kind = LihuiyuFault::Kind;
@@ -130,7 +130,7 @@ bool LihuiyuMachine::disturb() {
             last_was_bad_ = true;
             return true;
         case Kind::Busy:
-            busy_until_s_ = now_s_ + kBusyFault_s;
+            busy_until_s_ = now_s_ + kBusyFaultS;
             return false;
         case Kind::Stall:
             busy_until_s_ = kForever;
@@ -263,7 +263,7 @@ void LihuiyuMachine::perform(BoardAction action) {
             violate(std::move(action.text));
             break;
         case BoardAction::Kind::Finish:
-            finished_until_s_ = now_s_ + kFinishedPulse_s;
+            finished_until_s_ = now_s_ + kFinishedPulseS;
             ++programs_finished_;
             break;
         case BoardAction::Kind::ReleaseRails:
@@ -280,7 +280,7 @@ void LihuiyuMachine::perform(BoardAction action) {
             const bool diagonal = action.dx != 0 && action.dy != 0;
             const double slower = diagonal && action.speed.slows_diagonals ? std::sqrt(2.0) : 1.0;
             const double speed = std::max(action.speed.mm_per_s, 1e-3);
-            begin_motion(action, to, way * kInchPerStep_mm / speed * slower);
+            begin_motion(action, to, way * kNominalStepMm / speed * slower);
             break;
         }
     }

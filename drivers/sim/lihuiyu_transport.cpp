@@ -18,7 +18,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr double kFastStep_s = 0.1;  // Between two questions at speed 0.
+constexpr double kFastStepS = 0.1;  // Between two questions at speed 0.
 
 class SimUsbPipe final : public UsbPipe {
 public:
@@ -68,7 +68,7 @@ private:
         const Clock::time_point now = Clock::now();
         const double passed_s = std::chrono::duration<double>(now - before_).count();
         before_ = now;
-        machine_.advance(speed_ > 0.0 ? passed_s * speed_ : kFastStep_s);
+        machine_.advance(speed_ > 0.0 ? passed_s * speed_ : kFastStepS);
         if (!machine_.violations().empty()) {
             const Violation& first = machine_.violations().front();
             throw LinkLost(

@@ -74,7 +74,7 @@ double distance_to(const Point& a, const Point& b, double x, double y) {
 // Every burnt point lies on the line, in its order and without a gap.
 void expect_burnt_along(const std::vector<BurntPiece>& pieces, const std::vector<Point>& points) {
     ASSERT_FALSE(pieces.empty());
-    constexpr double kStep_mm = 0.0254;
+    constexpr double kStepMm = 0.0254;
     std::size_t leg = 0;
     double worst = 0.0;
     double gap = std::hypot(pieces[0].x0_mm - points[0].x, pieces[0].y0_mm - points[0].y);
@@ -92,12 +92,12 @@ void expect_burnt_along(const std::vector<BurntPiece>& pieces, const std::vector
         }
         worst = std::max(worst, off(leg));
     }
-    EXPECT_LT(gap, kStep_mm);
-    EXPECT_LT(worst, kStep_mm);
+    EXPECT_LT(gap, kStepMm);
+    EXPECT_LT(worst, kStepMm);
     EXPECT_EQ(leg, points.size() - 2);
     EXPECT_LT(
         std::hypot(pieces.back().x1_mm - points.back().x, pieces.back().y1_mm - points.back().y),
-        kStep_mm);
+        kStepMm);
 }
 
 TEST(LihuiyuSession, BurnsExactlyTheProgram) {
