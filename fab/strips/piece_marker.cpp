@@ -285,13 +285,18 @@ private:
         TextHeights heights = label_heights();
         heights.most_mm = std::min(heights.most_mm, kAlongMm);
         const double length = frame_.length_mm();
-        if (end == PieceEnd::Finish) {
-            const double near = std::max(length / 2.0, length - kEndMm);
-            auto label = fit_along(room_, frame_, {length, near}, code, heights);
-            return label ? label : fit_along(room_, frame_, {length, length / 2.0}, code, heights);
+        const bool start = end == PieceEnd::Start;
+        const double from = start ? 0.0 : length;
+        for (const double reach : {std::min(kEndMm, length / 2.0), length / 2.0, length}) {
+            if (reach == length && !start) {
+                break;  // The near half is the start's.
+            }
+            const Stretch stretch{from, start ? reach : length - reach};
+            if (auto label = fit_along(room_, frame_, stretch, code, heights)) {
+                return label;
+            }
         }
-        auto label = fit_along(room_, frame_, {0.0, std::min(length, kEndMm)}, code, heights);
-        return label ? label : fit_along(room_, frame_, {0.0, length}, code, heights);
+        return std::nullopt;
     }
 
     void add_joint(PieceEnd end, const std::string& other) {
@@ -385,7 +390,9 @@ private:
                 for (const double at : {0.5, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88}) {
                     const Vector2d centre = left + at * rung + shift * cell.length_mm * cell.along;
                     const MarkShape bar(centre - length / 2.0 * rung, centre + length / 2.0 * rung);
-                    if (room_.is_free(bar, kBarClearMm)) {
+                    const MarkShape about = MarkShape::box(
+                        centre, rung / width, {length * width / 2.0 + kBarClearMm, kBarClearMm});
+                    if (room_.is_free(about, 0.0)) {
                         keep(bar);
                         has_bar_[number] = 1;
                         return true;
