@@ -1,13 +1,20 @@
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <numeric>
 #include <random>
+#include <span>
 
 #include <gtest/gtest.h>
 
 #include "fab/weave/assembly.h"
 #include "fab/weave/openings.h"
 #include "geometry/foliation.h"
+#include "geometry/io/read_mesh.h"
+#include "geometry/repair.h"
 #include "geometry/samples.h"
 #include "geometry/surface_measures.h"
+#include "geometry/topology.h"
 #include "tests/geometry/surfaces.h"
 #include "tests/support/cut_strips.h"
 #include "tests/support/quad_grids.h"
@@ -61,19 +68,26 @@ Job plan(const geometry::QuadMesh& mesh,
     return plan(mesh, weave_cells(mesh, params), cutting);
 }
 
+geometry::QuadMesh grid_of(const geometry::Mesh& mesh,
+                           double area,
+                           double cells,
+                           geometry::FoliationMode mode = geometry::FoliationMode::Auto,
+                           geometry::Junctions junctions = geometry::Junctions::Conforming) {
+    geometry::FoliationOptions options;
+    options.mode = mode;
+    geometry::GridOptions grid;
+    grid.strip_width_mm = std::sqrt(area / cells);
+    grid.junctions = junctions;
+    return geometry::build_quad_mesh(geometry::compute_foliation(mesh, options), grid);
+}
+
 geometry::QuadMesh sample_grid(std::string_view name,
                                double cells,
                                geometry::FoliationMode mode = geometry::FoliationMode::Auto,
                                geometry::Junctions junctions = geometry::Junctions::Conforming) {
     const geometry::TriangleMesh triangles = geometry::make_sample(name, 2500);
-    geometry::FoliationOptions options;
-    options.mode = mode;
-    const geometry::Foliation foliation =
-        geometry::compute_foliation(testing::to_mesh(triangles), options);
-    geometry::GridOptions grid;
-    grid.strip_width_mm = std::sqrt(geometry::surface_area(triangles) / cells);
-    grid.junctions = junctions;
-    return geometry::build_quad_mesh(foliation, grid);
+    return grid_of(testing::to_mesh(triangles), geometry::surface_area(triangles), cells, mode,
+                   junctions);
 }
 
 constexpr std::array kPatterns{WeavePattern::Plain,      WeavePattern::Twill2x2,
@@ -196,8 +210,13 @@ TEST(PlanAssembly, NeedsNoThreadCylinderByCylinder) {
     }
 }
 
+const geometry::QuadMesh& eight() {
+    static const geometry::QuadMesh mesh = sample_grid("eight", 500.0);
+    return mesh;
+}
+
 TEST(PlanAssembly, JoinsRegionsLast) {
-    const auto mesh = sample_grid("eight", 500.0);
+    const auto& mesh = eight();
     const Job job = plan(mesh);
     std::size_t strips_joined = 0;
     int region = 0;
@@ -216,24 +235,43 @@ TEST(PlanAssembly, JoinsRegionsLast) {
 }
 
 TEST(PlanAssembly, GrowsOnlyWhereSomethingLies) {
-    for (const char* name : {"eight", "hand"}) {
-        const Job job = plan(sample_grid(name, 500.0), WeavePattern::Plain, {.through = true});
-        std::vector<char> lies(job.cut.strips.size(), 0);
-        int begun = -1;
-        for (const AssemblyMove& move : job.assembly.moves) {
-            if (move.cells.empty()) {
-                continue;
-            }
-            const auto& crossings = job.crossings[static_cast<std::size_t>(move.strip)];
-            const bool touches = std::any_of(crossings.begin(), crossings.end(), [&](auto& c) {
-                return lies[static_cast<std::size_t>(c.strip)] != 0;
-            });
-            EXPECT_TRUE(touches || move.region != begun);
-            begun = move.region;
-            for (const Crossing& crossing : crossings) {
-                lies[static_cast<std::size_t>(crossing.strip)] = 1;
-            }
+    const Job job = plan(eight(), WeavePattern::Plain, {.through = true});
+    std::vector<char> lies(job.cut.strips.size(), 0);
+    int begun = -1;
+    for (const AssemblyMove& move : job.assembly.moves) {
+        if (move.cells.empty()) {
+            continue;
         }
+        const auto& crossings = job.crossings[static_cast<std::size_t>(move.strip)];
+        const bool touches = std::any_of(crossings.begin(), crossings.end(), [&](auto& c) {
+            return lies[static_cast<std::size_t>(c.strip)] != 0;
+        });
+        EXPECT_TRUE(touches || move.region != begun);
+        begun = move.region;
+        for (const Crossing& crossing : crossings) {
+            lies[static_cast<std::size_t>(crossing.strip)] = 1;
+        }
+    }
+}
+
+TEST(PlanAssembly, MakesEveryMovePossibleOnSharedMeshes) {
+    const auto folder = std::filesystem::path(LEAFCUTTER_SHARED_DIR) / "data/meshes";
+    if (!std::filesystem::exists(folder / "eight-7k.off")) {
+        GTEST_SKIP() << "no shared meshes";
+    }
+    for (const char* name : {"eight-7k.off", "hand-6-boundaries.obj", "cat-7-boundaries.obj",
+                             "face-gu.off", "bunny.off", "fertility.off", "torus.off"}) {
+        SCOPED_TRACE(name);
+        std::ifstream file(folder / name, std::ios::binary);
+        const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+        const geometry::Mesh mesh =
+            geometry::repair(geometry::read_mesh(std::as_bytes(std::span(bytes)), name)).mesh;
+        const double area = geometry::surface_area(geometry::to_triangle_mesh(mesh));
+        const geometry::QuadMesh quads = grid_of(mesh, area, 2000.0);
+        const Job job = plan(quads, WeavePattern::Plain, {.most_cells = 60});
+        EXPECT_EQ(job.assembly.threaded, 0);
+        plan(quads, WeavePattern::Twill2x2,
+             {.most_cells = 60, .opening = [](int strip) { return 7 * strip; }, .through = true});
     }
 }
 
