@@ -14,20 +14,20 @@
 #include "fab/guide/wording.h"
 #include "fab/guide/work_time.h"
 #include "fab/material/totals.h"
+#include "fab/strips/marks.h"
 
 namespace leafcutter::fab::guide {
 
 namespace {
 
-// A file's name without folders and ending.
-std::string model_name(const std::string& file) {
-    const std::size_t slash = file.find_last_of("/\\");
-    std::string name = slash == std::string::npos ? file : file.substr(slash + 1);
-    const std::size_t dot = name.find_last_of('.');
-    if (dot != std::string::npos && dot > 0) {
-        name.erase(dot);
+// A file's name without its ending.
+std::string model_name(std::string file) {
+    constexpr std::size_t kLongestEnding = 5;
+    const std::size_t dot = file.find_last_of('.');
+    if (dot != std::string::npos && dot > 0 && file.size() - dot <= kLongestEnding) {
+        file.erase(dot);
     }
-    return name.empty() ? "Woven object" : name;
+    return file.empty() ? "Woven object" : file;
 }
 
 std::string time_text(double seconds) {
@@ -164,6 +164,35 @@ private:
         list.items = std::move(explained.legend);
         add(std::move(list));
         add_joining();
+        add_legend();
+    }
+
+    // Every kind of mark, as it looks and what it tells.
+    void add_legend() {
+        constexpr double kHeight = 3.2;
+        heading(2, "All marks");
+        Table table;
+        table.columns = {{"", Align::Left, 1.1}, {"Mark", Align::Left, 2.7}, {"Means", Align::Left, 5.2}};
+        for (const LegendEntry& entry : mark_legend(job_.params.fit)) {
+            Drawing drawing{1.0, kHeight + 0.6, {}, entry.symbol};
+            Paths lines;
+            lines.closed = false;
+            lines.stroke = Stroke{Colour{34, 34, 34}, 0.25, false};
+            for (const Polyline& line : entry.picture) {
+                Points points;
+                for (const Eigen::Vector2d& point : line) {
+                    points.emplace_back(0.3 + kHeight * point.x(), 0.3 + kHeight * (1.0 - point.y()));
+                    drawing.width_mm = std::max(drawing.width_mm, points.back().x() + 0.3);
+                }
+                lines.lines.push_back(std::move(points));
+            }
+            drawing.shapes.emplace_back(std::move(lines));
+            document_.shared.push_back(std::move(drawing));
+            table.rows.push_back({Cell{{}, {}, false, document_.shared.size() - 1},
+                                  Cell{entry.symbol, {}, false, {}},
+                                  Cell{entry.meaning, {}, false, {}}});
+        }
+        add(std::move(table));
     }
 
     void add_joining() {

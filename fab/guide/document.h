@@ -47,7 +47,7 @@ enum class Anchor { Start, Middle, End };
 
 struct Label {
     std::string text;
-    Point at;  // On the base line.
+    Point at = Point::Zero();  // On the base line.
     double size_mm = 2.6;
     Anchor anchor = Anchor::Start;
     Colour colour = {34, 34, 34};

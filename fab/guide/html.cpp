@@ -54,7 +54,7 @@ nav ol { list-style: none; padding: 0; columns: 2; } nav a { color: inherit; }
   body { font-size: 10pt; max-width: none; padding: 0; }
   h1 { font-size: 22pt; } h2 { font-size: 16pt; margin-top: 0; } h3 { font-size: 12pt; }
   h4 { font-size: 10pt; } .lead { font-size: 12pt; } .note, figcaption, table { font-size: 8.5pt; }
-  h2 { break-before: page; } h2, h3, h4, th { break-after: avoid; }
+  h2 { break-before: page; } h2, h3, h4, th, p:has(+ figure) { break-after: avoid; }
   tr, li, figure, .step, svg { break-inside: avoid; } p { orphans: 2; widows: 2; }
 }
 )";

@@ -22,6 +22,7 @@ public:
         document_.blocks.emplace_back(Heading{1, "Good to know"});
         add_left_out();
         add_breaks();
+        add_flips();
         add_warnings();
         add_checks();
     }
@@ -76,6 +77,23 @@ private:
         if (count > kMostBreaks) {
             text(fmt::format("And {} more: weave.json lists all.", count - kMostBreaks));
         }
+    }
+
+    // Crossings turned over so that no strip runs too far on one side.
+    void add_flips() {
+        const std::vector<int>& flips = job_.weave.floats.flips;
+        if (flips.empty()) {
+            return;
+        }
+        std::vector<std::string> names;
+        for (const int quad : flips) {
+            names.push_back(crossing_at(quad));
+        }
+        text(fmt::format("{} turned over on purpose, so that no strip runs far without being held: "
+                         "{}. Steps and marks count them in.",
+                         flips.size() == 1 ? "One crossing is" :
+                                             fmt::format("{} crossings are", flips.size()),
+                         first_of(names, 60)));
     }
 
     void add_warnings() {

@@ -90,9 +90,9 @@ public:
         canvas_.bookmark(document_.title, 1, y_);
         set_lines(title, kTitle, kLeft);
         y_ += 2.0;
-        for (std::size_t i = 0; i < document_.blocks.size(); ++i) {
-            next_ = i + 1 < document_.blocks.size() ? &document_.blocks[i + 1] : nullptr;
-            std::visit([&](const auto& one) { set_block(one); }, document_.blocks[i]);
+        for (const Block& block : document_.blocks) {
+            ++next_;
+            std::visit([&](const auto& one) { set_block(one); }, block);
         }
         number_pages();
         return pages_;
@@ -177,18 +177,23 @@ private:
         y_ += heading.level <= 1 ? 3.0 : 1.0;
     }
 
-    // How much of the block behind a heading must stand on the same page.
+    // How much of what comes behind a heading must stand on the same page: up to its picture.
     double height_that_follows() const {
-        if (next_ == nullptr) {
-            return 0.0;
+        double height = 0.0;
+        for (std::size_t i = next_; i < document_.blocks.size() && i < next_ + 3; ++i) {
+            const Block& block = document_.blocks[i];
+            if (const auto* paragraph = std::get_if<Paragraph>(&block)) {
+                const auto lines = lines_of(paragraph->text, kBody, kTextWidthMm);
+                height += static_cast<double>(lines.size()) * kBody.line_mm() + 2.0;
+            } else if (const auto* figure = std::get_if<Figure>(&block)) {
+                return height + height_of(*figure);
+            } else if (const auto* step = std::get_if<Step>(&block)) {
+                return height + height_of(*step);
+            } else {
+                return height + 4.0 * kBody.line_mm();
+            }
         }
-        if (const auto* figure = std::get_if<Figure>(next_)) {
-            return height_of(*figure);
-        }
-        if (const auto* step = std::get_if<Step>(next_)) {
-            return height_of(*step);
-        }
-        return 4.0 * kBody.line_mm();
+        return height;
     }
 
     void set_block(const Paragraph& paragraph) {
@@ -506,7 +511,7 @@ private:
 
     const Document& document_;
     Canvas& canvas_;
-    const Block* next_ = nullptr;  // Behind the one that is set.
+    std::size_t next_ = 0;  // The block behind the one that is set.
     double y_ = kTop;
     int pages_ = 0;
 };

@@ -38,10 +38,22 @@ struct FreeDocument {
     void operator()(HPDF_Doc document) const { HPDF_Free(document); }
 };
 
+// The library goes on after an error, but every later call then reports another one.
+struct FirstError {
+    HPDF_STATUS error = HPDF_OK;
+    HPDF_STATUS detail = 0;
+};
+
+void note_error(HPDF_STATUS error, HPDF_STATUS detail, void* first) {
+    auto* noted = static_cast<FirstError*>(first);
+    if (noted->error == HPDF_OK) {
+        *noted = {error, detail};
+    }
+}
+
 class PdfCanvas final : public Canvas {
 public:
-    // Without an error handler the library remembers its first error and ignores calls after it.
-    PdfCanvas() : document_(HPDF_New(nullptr, nullptr)) {
+    PdfCanvas() : document_(HPDF_New(note_error, &error_)) {
         if (!document_) {
             throw geometry::Error(geometry::ErrorKind::SelfCheck, "pdf", "guide: no PDF document");
         }
@@ -127,7 +139,7 @@ public:
         HPDF_Outline entry =
             HPDF_CreateOutline(document_.get(), parent, to_winansi(title).c_str(), encoder_);
         HPDF_Destination there = HPDF_Page_CreateDestination(page_);
-        HPDF_Destination_SetXYZ(there, 0.0F, points(kPageHeightMm - y_mm + 4.0), 0.0F);
+        HPDF_Destination_SetFitH(there, points(kPageHeightMm - y_mm + 4.0));
         HPDF_Outline_SetDestination(entry, there);
         HPDF_Outline_SetOpened(entry, depth == 0 ? HPDF_TRUE : HPDF_FALSE);
         outlines_[depth] = entry;
@@ -138,9 +150,10 @@ public:
     std::string bytes(const std::string& title) {
         HPDF_SetInfoAttr(document_.get(), HPDF_INFO_TITLE, to_winansi(title).c_str());
         HPDF_SaveToStream(document_.get());
-        if (const HPDF_STATUS error = HPDF_GetError(document_.get()); error != HPDF_OK) {
+        if (error_.error != HPDF_OK) {
             throw geometry::Error(geometry::ErrorKind::SelfCheck, "pdf",
-                                  fmt::format("guide: the PDF library reports {:#x}", error));
+                                  fmt::format("guide: the PDF library reports {:#x}, {:#x}",
+                                              error_.error, error_.detail));
         }
         std::string result(HPDF_GetStreamSize(document_.get()), '\0');
         auto size = static_cast<HPDF_UINT32>(result.size());
@@ -198,6 +211,7 @@ private:
         HPDF_Page_EndText(page_);
     }
 
+    FirstError error_;
     std::unique_ptr<std::remove_pointer_t<HPDF_Doc>, FreeDocument> document_;
     HPDF_Font regular_ = nullptr;  // These belong to the document.
     HPDF_Font bold_ = nullptr;

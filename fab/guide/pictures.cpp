@@ -208,6 +208,14 @@ std::optional<Point> label_place(const View& view,
     return best;
 }
 
+// Fits the picture's height to what is seen.
+PictureSize fitted(const View& view, PictureSize size) {
+    const Point extent = (view.high - view.low).cwiseMax(1e-9);
+    const double scale = std::min((size.width_mm - 2.0 * kMargin) / extent.x(),
+                                  (size.height_mm - 2.0 * kMargin) / extent.y());
+    return {size.width_mm, std::min(size.height_mm, scale * extent.y() + 2.0 * kMargin)};
+}
+
 void append_badge(Drawing& drawing, const Point& at, const std::string& text) {
     const double half = 1.9 + 0.8 * static_cast<double>(text.size() - 1);
     Paths badge;
@@ -285,14 +293,6 @@ std::size_t best_view(const Views& views) {
         }
     }
     return best;
-}
-
-// Fits the picture's height to what is seen.
-static PictureSize fitted(const View& view, PictureSize size) {
-    const Point extent = (view.high - view.low).cwiseMax(1e-9);
-    const double scale = std::min((size.width_mm - 2.0 * kMargin) / extent.x(),
-                                  (size.height_mm - 2.0 * kMargin) / extent.y());
-    return {size.width_mm, std::min(size.height_mm, scale * extent.y() + 2.0 * kMargin)};
 }
 
 Drawing woven_picture(const JobResult& job, Views& views, std::size_t view, PictureSize size) {
@@ -410,10 +410,17 @@ ModelPictures::ModelPictures(const JobResult& job,
       last_view_(best_view(views)) {}
 
 std::size_t ModelPictures::view_for(const std::vector<int>& quads) {
+    // Sides from where much of the model is seen are easier to recognise, and those from above.
+    const double whole = std::max(1e-12, views_.seen_area(best_view(views_)));
+    const auto worth = [&](std::size_t view) {
+        const double liking = std::min(1.0, views_.seen_area(view) / whole);
+        const double below = views_.camera(view).to_viewer.y() < 0.0 ? 0.8 : 1.0;
+        return below * liking * liking * views_.seen_area(view, quads);
+    };
     std::size_t best = last_view_;
-    double most = 1.35 * views_.seen_area(last_view_, quads);
+    double most = 1.35 * worth(last_view_);
     for (std::size_t view = 0; view < views_.count(); ++view) {
-        const double area = views_.seen_area(view, quads);
+        const double area = worth(view);
         if (area > most) {
             most = area;
             best = view;
@@ -434,7 +441,7 @@ std::size_t ModelPictures::base(std::size_t view) {
     const auto [at, is_new] = known_.try_emplace({view, -2}, 0);
     if (is_new) {
         const View& seen = views_.at(view);
-        const Frame frame(seen, size_, kMargin);
+        const Frame frame(seen, fitted(seen, size_), kMargin);
         ColourGroups cells;
         for (const SeenQuad& quad : seen.quads) {
             const int level = std::max(2, light_level(quad.light));
@@ -452,7 +459,7 @@ std::size_t ModelPictures::outline(std::size_t view) {
     if (is_new) {
         const View& seen = views_.at(view);
         Drawing drawing;
-        append_outline(drawing, seen, Frame(seen, size_, kMargin));
+        append_outline(drawing, seen, Frame(seen, fitted(seen, size_), kMargin));
         at->second = add_shared(std::move(drawing));
     }
     return at->second;
@@ -462,7 +469,7 @@ std::size_t ModelPictures::finished(std::size_t view, int region) {
     const auto [at, is_new] = known_.try_emplace({view, region}, 0);
     if (is_new) {
         const View& seen = views_.at(view);
-        const Frame frame(seen, size_, kMargin);
+        const Frame frame(seen, fitted(seen, size_), kMargin);
         ColourGroups cells;
         for (const SeenQuad& quad : seen.quads) {
             const auto number = static_cast<std::size_t>(quad.quad);
@@ -483,8 +490,8 @@ Drawing ModelPictures::picture(std::size_t view,
                                const Progress& progress,
                                const Highlight& highlight) {
     const View& seen = views_.at(view);
-    const Frame frame(seen, size_, kMargin);
-    Drawing drawing{size_.width_mm, size_.height_mm, {}, "What is done so far, the new in red"};
+    const Frame frame(seen, fitted(seen, size_), kMargin);
+    Drawing drawing{size_.width_mm, fitted(seen, size_).height_mm, {}, "What is done so far, the new in red"};
     drawing.shapes.emplace_back(Use{base(view)});
     std::vector<bool> is_finished(job_.assembly.regions.size() + 1, false);
     for (const int region : progress.finished) {

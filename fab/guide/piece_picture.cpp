@@ -247,7 +247,7 @@ private:
         const double width = (piece_.cut_left[from] - piece_.cut_right[from]).norm();
         const double scale =
             std::min({4.0, (size_.width_mm - 4.0) / (way.norm() + tab + 1.0),
-                      0.62 * (size_.height_mm - kTop) / std::max(width, 1e-6)});
+                      0.55 * (size_.height_mm - kTop) / std::max(width, 1e-6)});
         Placing place(-std::atan2(way.y(), way.x()), scale);
         const double y = (size_.height_mm + kTop) / 2.0;
         if (of_end_) {
@@ -302,7 +302,9 @@ std::string meaning_of(const Piece& piece, const Mark& mark) {
                 piece.id);
         }
         if (mark.text.front() == '+') {
-            return fmt::format("The piece that is joined here: {}.", mark.text.substr(1));
+            return mark.text.size() == 1
+                       ? std::string("A plus: this end is joined to the start of the same piece.")
+                       : fmt::format("The piece that is joined here: {}.", mark.text.substr(1));
         }
         return fmt::format("The strip that crosses here: {}.", mark.text);
     }
@@ -438,8 +440,8 @@ ExplainedPiece explain_piece(const JobIndex& index, const Piece& piece) {
     const Palette palette = palette_of(index.job());
     const Colour& colour = palette.of(piece.family);
     ExplainedPiece explained;
-    explained.drawings.push_back(whole_piece(piece, colour, {kTextWidthMm, 70.0}));
-    const PictureSize size{(kTextWidthMm - 3.0) / 2.0, 52.0};
+    explained.drawings.push_back(whole_piece(piece, colour, {kTextWidthMm, 36.0}));
+    const PictureSize size{(kTextWidthMm - 3.0) / 2.0, 42.0};
     explained.drawings.push_back(closeup_of(piece, colour, false, size, explained.legend));
     explained.drawings.push_back(closeup_of(piece, colour, true, size, explained.legend));
     return explained;

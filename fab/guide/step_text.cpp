@@ -177,12 +177,12 @@ private:
                 text.texts.push_back(fmt::format("{}, {}: {}.", name_of(one),
                                                  index_.place_of(one.strip), way_of(one)));
                 if (const std::string thread = threading(one); !thread.empty()) {
-                    text.texts.back() += " " + thread;
+                    text.texts.back() += fmt::format(" {}", thread);
                 }
             } else if (text.texts.empty()) {
                 text.texts.push_back(joint_text(one));
             } else {
-                text.texts.back() += " " + joint_text(one);
+                text.texts.back() += fmt::format(" {}", joint_text(one));
             }
         }
         return text;

@@ -178,7 +178,9 @@ private:
             int old = 0;
             while (std::abs(row) < 6 && old < kRowsBeside) {
                 const OrientedQuad next = beside(way_.front(), row + direction);
-                if (next.quad < 0 || !row_is_there(row + direction)) {
+                // Over a joint between regions the weave does not go on yet.
+                if (next.quad < 0 || !row_is_there(row + direction) ||
+                    index_.region_of(next.quad) != index_.region_of(way_.front().quad)) {
                     break;
                 }
                 old += is_fresh(index_.strip_at(next.quad, strip_.family)) ? 0 : 1;

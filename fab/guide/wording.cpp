@@ -108,7 +108,7 @@ std::string id_ranges(const std::vector<std::string>& ids) {
         if (last == i + 1) {
             last = i;  // Two are two, not a range.
         } else if (last > i) {
-            text += kDash + ids[last];
+            text += fmt::format("{}{}", kDash, ids[last]);
         }
         i = last + 1;
     }
@@ -132,7 +132,6 @@ std::string crossing_text(const std::vector<NamedCrossing>& way) {
         text += stretch_text(way, begin, stretch);
         begin = stretch.end;
     }
-    // "over P1; then under P2" reads worse than "over P1, under P2".
     return text;
 }
 
