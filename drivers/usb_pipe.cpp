@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 
 constexpr int kInterface = 0;
 constexpr int kConfiguration = 1;
-constexpr unsigned kControlTimeout_ms = 1500;
+constexpr unsigned kControlTimeoutMs = 1500;
 
 struct ContextCloser {
     void operator()(libusb_context* context) const { libusb_exit(context); }
@@ -67,7 +67,7 @@ public:
                                       static_cast<unsigned>(LIBUSB_REQUEST_TYPE_VENDOR) |
                                       static_cast<unsigned>(LIBUSB_RECIPIENT_DEVICE));
         const int result = libusb_control_transfer(handle_.get(), type, request, value, 0, nullptr,
-                                                   0, kControlTimeout_ms);
+                                                   0, kControlTimeoutMs);
         if (result < 0) {
             lost(name_, libusb_error_name(result));
         }

@@ -311,6 +311,71 @@ INSTANTIATE_TEST_SUITE_P(All,
                                          Fatal{LihuiyuFault::Kind::Power, "no power"}),
                          [](const auto& fault) { return "Fault" + std::to_string(fault.index); });
 
+// Every fault at every packet of a job. One contour: what is burnt is one piece of it from its
+// start, nothing twice, and all of it if the job says that it is done.
+TEST(LihuiyuSession, EndsEveryFaultAtEveryPacketInTheDarkWithNothingBurntTwice) {
+    const std::string program = program_of(spiral(12), 1200.0);
+    LihuiyuBench good;
+    ASSERT_TRUE(good.home());
+    good.session().start(program);
+    ASSERT_EQ(good.finish_job(), JobOutcome::Done);
+    const double whole_mm = burnt_mm(good.machine().beam_log().pieces());
+    const std::size_t packets = good.machine().packets();
+    using Kind = LihuiyuFault::Kind;
+    for (const Kind kind : {Kind::Crc, Kind::CrcAlways, Kind::Busy, Kind::Stall, Kind::Mute,
+                            Kind::Power, Kind::Unplug}) {
+        for (std::size_t at = 3; at <= packets; ++at) {
+            LihuiyuMachineOptions options;
+            options.fault = LihuiyuFault{kind, at};
+            LihuiyuBench bench(options);
+            ASSERT_TRUE(bench.home());
+            bench.session().start(program);
+            try {
+                bench.finish_job(120.0);
+            } catch (const LinkLost& lost) {
+                bench.session().lose_link(lost.what());
+            }
+            bench.machine().advance(20.0);
+            const auto what = fmt::format("fault {} at {}", static_cast<int>(kind), at);
+            ASSERT_NE(bench.session().progress().outcome, JobOutcome::Running) << what;
+            ASSERT_FALSE(bench.machine().beam_on()) << what;
+            const auto& pieces = bench.machine().beam_log().pieces();
+            for (std::size_t i = 1; i < pieces.size(); ++i) {
+                ASSERT_LT(std::hypot(pieces[i].x0_mm - pieces[i - 1].x1_mm,
+                                     pieces[i].y0_mm - pieces[i - 1].y1_mm),
+                          1e-9)
+                    << what;
+            }
+            ASSERT_LE(burnt_mm(pieces), whole_mm + 0.03) << what;
+            if (bench.session().progress().outcome == JobOutcome::Done) {
+                ASSERT_NEAR(burnt_mm(pieces), whole_mm, 0.03) << what;
+                ASSERT_THAT(texts(bench.machine().violations()), IsEmpty()) << what;
+            }
+        }
+    }
+}
+
+// A stop at any moment: dark with the next word to the board, and no word after it moves anything.
+TEST(LihuiyuSession, IsDarkAtOnceWheneverItIsStopped) {
+    const std::string program = program_of(spiral(12), 1200.0);
+    for (int turns = 0; turns < 4000; turns += 37) {
+        LihuiyuBench bench;
+        ASSERT_TRUE(bench.home());
+        bench.session().start(program);
+        for (int turn = 0; turn < turns; ++turn) {
+            bench.step();
+        }
+        bench.session().stop();
+        bench.step();
+        const std::size_t pieces = bench.machine().beam_log().pieces().size();
+        ASSERT_FALSE(bench.run_until([&] { return bench.machine().beam_on(); }, 5.0)) << turns;
+        ASSERT_EQ(bench.machine().beam_log().pieces().size(), pieces) << turns;
+        ASSERT_TRUE(bench.machine().at_rest()) << turns;
+        ASSERT_TRUE(bench.session().may_close()) << turns;
+        ASSERT_THAT(texts(bench.machine().violations()), IsEmpty()) << turns;
+    }
+}
+
 TEST(LihuiyuSession, WaitsForABoardThatIsBusyWithLongWork) {
     LihuiyuMachineOptions options;
     LihuiyuBench bench(options);
