@@ -1,6 +1,7 @@
 #include "fab/strips/mark_frame.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace leafcutter::fab {
 
@@ -10,6 +11,29 @@ using Eigen::Vector2d;
 
 double turn_of(const Vector2d& a, const Vector2d& b) {
     return a.x() * b.y() - a.y() * b.x();
+}
+
+std::size_t nearest(const Ring& ring, const Vector2d& point) {
+    const auto nearer = [&](const Vector2d& a, const Vector2d& b) {
+        return (a - point).squaredNorm() < (b - point).squaredNorm();
+    };
+    return static_cast<std::size_t>(std::min_element(ring.begin(), ring.end(), nearer) -
+                                    ring.begin());
+}
+
+// The centre of gravity of what the ring encloses on its way from one of its points to another.
+Vector2d centre_between(const Ring& ring, const Vector2d& from, const Vector2d& to) {
+    const std::size_t last = nearest(ring, to);
+    Vector2d sum = Vector2d::Zero();
+    double area = 0.0;
+    for (std::size_t i = nearest(ring, from); i != last; i = (i + 1) % ring.size()) {
+        const Vector2d& a = ring[i];
+        const Vector2d& b = ring[(i + 1) % ring.size()];
+        const double part = turn_of(a - from, b - from);
+        area += part;
+        sum += part * (a + b + from) / 3.0;
+    }
+    return std::abs(area) > 0.0 ? Vector2d(sum / area) : Vector2d((from + to) / 2.0);
 }
 
 }  // namespace
@@ -47,15 +71,17 @@ MarkCell MarkFrame::cell(std::size_t i) const {
 
 std::optional<MarkCell> MarkFrame::tab(PieceEnd end) const {
     const bool start = end == PieceEnd::Start;
-    const double length = (start ? piece_.start_tab : piece_.end_tab).length_mm;
-    if (length <= 0.0) {
+    if ((start ? piece_.start_tab : piece_.end_tab).length_mm <= 0.0) {
         return std::nullopt;
     }
     const std::size_t rung = start ? 0 : cells();
     const Vector2d& left = piece_.cut_left[rung];
     const Vector2d& right = piece_.cut_right[rung];
-    const Vector2d way = length * cell(start ? 0 : cells() - 1).along;
-    return start ? MarkCell(left - way, right - way, left, right)
+    const Vector2d middle = (left + right) / 2.0;
+    const Vector2d way = 2.0 * (start ? centre_between(piece_.outline, left, right)
+                                      : centre_between(piece_.outline, right, left)) -
+                         2.0 * middle;
+    return start ? MarkCell(left + way, right + way, left, right)
                  : MarkCell(left, right, left + way, right + way);
 }
 

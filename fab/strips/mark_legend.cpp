@@ -22,7 +22,8 @@ void add_texts(std::vector<LegendEntry>& legend) {
                       "outside of the finished shape",
                       text_strokes(">")});
     legend.push_back({"+W12.2 at a tab",
-                      "this end goes under the start of piece W12.2 and is joined to it",
+                      "this end goes under the start of piece W12.2 and is joined to it; a plus "
+                      "alone: under the piece's own start",
                       text_strokes("+W12.2")});
     legend.push_back({"P7 inside a cell",
                       "strip P7 crosses here; between two such ids count cell by cell",
@@ -46,9 +47,9 @@ std::vector<LegendEntry> mark_legend(const FitParams& fit) {
                           on_cell({{{0.6, 0.05}, {0.6, 0.95}}})});
     }
     if (fit.weave_marks) {
-        legend.push_back({"short bar across the strip, inside a cell",
-                          "the crossing strip goes over this one here; cells without a bar lie on "
-                          "top",
+        legend.push_back({"single short bar across the strip, between two pairs of ticks",
+                          "the crossing strip goes over this one here (beside a text the bar moves "
+                          "aside); cells without a bar lie on top",
                           on_cell({{{0.6, 0.38}, {0.6, 0.62}}})});
     }
     legend.push_back({"scored line from corner to corner of a cell", "fold here a little",

@@ -29,7 +29,8 @@ constexpr double kLabelPart = 0.5;  // Height of a label in widths of its strip.
 constexpr double kNamePart = 0.27;  // Of a crossing strip's id.
 constexpr double kNameOfLabel = 0.6;
 constexpr double kReadableLabelMm = 1.6;  // Smaller ones rather take several cells,
-constexpr double kAlongMm = 3.0;          // where they are no higher than this.
+constexpr double kAlongMm = 2.4;          // where they are no higher than this
+constexpr double kAlongPart = 0.42;       // and leave room for bars beside them.
 constexpr double kReadableNameMm = 1.6;
 constexpr double kEndMm = 45.0;  // Labels stand this near to their end, or in kEndCells.
 constexpr std::size_t kEndCells = 3;
@@ -197,7 +198,7 @@ private:
     void add_texts() {
         result_.is_named = add_start_label();
         for (const std::string& code : codes()) {
-            if (!result_.is_named || add_label(PieceEnd::Finish, code)) {
+            if (!result_.is_named || start_is_far_ || add_label(PieceEnd::Finish, code)) {
                 break;
             }
         }
@@ -206,7 +207,8 @@ private:
         add_names();
     }
 
-    // A label is worth more than the ticks where it stands.
+    // A label is worth more than the ticks where it stands, and better far from the start than
+    // none.
     bool add_start_label() {
         for (const std::string& code : codes()) {
             if (add_label(PieceEnd::Start, code)) {
@@ -216,6 +218,10 @@ private:
             const bool fits = add_label(PieceEnd::Start, code);
             reserve_ticks();
             if (fits) {
+                return true;
+            }
+            start_is_far_ = add_label(PieceEnd::Finish, code);
+            if (start_is_far_) {
                 return true;
             }
         }
@@ -283,14 +289,12 @@ private:
 
     std::optional<PlacedText> label_along(PieceEnd end, const std::string& code) const {
         TextHeights heights = label_heights();
-        heights.most_mm = std::min(heights.most_mm, kAlongMm);
+        heights.most_mm = std::max(
+            kSmallestTextMm, std::min({fit_.text_mm, kAlongMm, kAlongPart * frame_.widest_mm()}));
         const double length = frame_.length_mm();
         const bool start = end == PieceEnd::Start;
         const double from = start ? 0.0 : length;
-        for (const double reach : {std::min(kEndMm, length / 2.0), length / 2.0, length}) {
-            if (reach == length && !start) {
-                break;  // The near half is the start's.
-            }
+        for (const double reach : {std::min(kEndMm, length / 2.0), length / 2.0}) {
             const Stretch stretch{from, start ? reach : length - reach};
             if (auto label = fit_along(room_, frame_, stretch, code, heights)) {
                 return label;
@@ -417,6 +421,7 @@ private:
     std::size_t before_ticks_ = 0;  // Taken of the room.
     std::vector<Ticks> ticks_;
     std::vector<char> has_bar_;  // Per cell.
+    bool start_is_far_ = false;  // The start's label stands in the other half.
     PieceMarks result_;
 };
 
