@@ -110,6 +110,13 @@ json woven_record(const JobResult& job) {
                    {"lacking_mm", model.lacking_mm},
                    {"narrowed_cells", model.narrowed_cells},
                    {"narrowed_mm", model.narrowed_mm}};
+    record["tight"] = json::array();
+    for (std::size_t i = 0; i < std::min(kMostBends, model.tight.size()); ++i) {
+        const Clash& clash = model.tight[i];
+        record["tight"].push_back({{"strip", job.strips[static_cast<std::size_t>(clash.strip)].id},
+                                   {"cell", clash.cell},
+                                   {"lacking_mm", clash.depth_mm}});
+    }
     if (model.smallest_gap_mm) {
         record["smallest_gap_mm"] = *model.smallest_gap_mm;
     }

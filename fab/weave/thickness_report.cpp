@@ -207,6 +207,61 @@ const char* name_of(std::size_t family) {
     return family == 0 ? "weft" : "warp";
 }
 
+void warn_of_gaps(const ThicknessReport& report,
+                  std::size_t f,
+                  std::vector<std::string>& warnings) {
+    const FamilyThickness& family = report.families[f];
+    if (family.changes == 0) {
+        return;
+    }
+    if (family.gap_mm < family.needed_gap_mm) {
+        warnings.push_back(fmt::format(
+            "{} strips are {:.3g} mm thick and can't pass gaps of {:.3g} mm: fit.clearance_mm must "
+            "be at least {:.2f}",
+            name_of(f), family.thickness_mm, family.gap_mm, report.need.pass_mm + 0.005));
+    } else if (family.gap_mm < family.joint_mm * (1.0 - kRounding)) {
+        warnings.push_back(fmt::format(
+            "joints of {} pieces are {:.3g} mm thick, the gaps that they pass {:.3g} mm: "
+            "fit.clearance_mm of {:.2f} would let them through",
+            name_of(f), family.joint_mm, family.gap_mm, family.joint_mm / 2.0 + 0.005));
+    }
+}
+
+// The strips of a family of which this is so.
+std::vector<std::size_t> those(const ThicknessReport& report,
+                               std::span<const Strip> strips,
+                               std::size_t f,
+                               bool StripBend::*fault) {
+    std::vector<std::size_t> result;
+    for (std::size_t i = 0; i < strips.size(); ++i) {
+        if ((strips[i].family == Family::Weft) == (f == 0) && report.strips[i].*fault) {
+            result.push_back(i);
+        }
+    }
+    return result;
+}
+
+void warn_of_bends(const ThicknessReport& report,
+                   std::span<const Strip> strips,
+                   std::size_t f,
+                   std::vector<std::string>& warnings) {
+    const FamilyThickness& family = report.families[f];
+    const auto tight = those(report, strips, f, &StripBend::too_tight);
+    if (!tight.empty()) {
+        warnings.push_back(fmt::format(
+            "{}: bent more tightly than the {}'s material takes ({:.3g} mm), in {} down to a "
+            "radius of {:.2g} mm",
+            named(strips, tight), name_of(f), family.min_radius_mm, family.tightest,
+            family.least_radius_mm));
+    }
+    const auto too_short = those(report, strips, f, &StripBend::too_short);
+    if (!too_short.empty()) {
+        warnings.push_back(fmt::format(
+            "{}: cells shorter than the {:.3g} mm that the way from over to under takes",
+            named(strips, too_short), family.flat_gap_mm));
+    }
+}
+
 }  // namespace
 
 ThicknessReport judge_thickness(const geometry::QuadMesh& mesh,
@@ -243,54 +298,27 @@ std::vector<std::string> thickness_warnings(const ThicknessReport& report,
                                             std::span<const Strip> strips,
                                             const WovenModel& model) {
     std::vector<std::string> warnings;
-    bool passes = true;
     for (std::size_t f = 0; f < 2; ++f) {
-        const FamilyThickness& family = report.families[f];
-        if (family.changes > 0 && family.gap_mm < family.needed_gap_mm) {
-            passes = false;
-            warnings.push_back(fmt::format(
-                "{0} strips are {1:.3g} mm thick and can't pass gaps of {2:.3g} mm: "
-                "fit.clearance_mm must be at least {3:.2f}",
-                name_of(f), family.thickness_mm, family.gap_mm, report.need.pass_mm + 0.005));
-        }
-        if (family.changes > 0 && family.gap_mm >= family.needed_gap_mm &&
-            family.gap_mm < family.joint_mm * (1.0 - kRounding)) {
-            warnings.push_back(fmt::format(
-                "joints of {0} pieces are {1:.3g} mm thick, the gaps that they pass {2:.3g} mm: "
-                "fit.clearance_mm of {3:.2f} would let them through",
-                name_of(f), family.joint_mm, family.gap_mm, family.joint_mm / 2.0 + 0.005));
-        }
+        warn_of_gaps(report, f, warnings);
+        warn_of_bends(report, strips, f, warnings);
+    }
+    const auto passes = [](const FamilyThickness& family) {
+        return family.changes == 0 || family.gap_mm >= family.needed_gap_mm;
+    };
+    // Where nothing passes at all, single crossings need no words.
+    if (std::all_of(report.families.begin(), report.families.end(), passes) &&
+        model.tight_crossings > 0) {
         std::vector<std::size_t> tight;
-        std::vector<std::size_t> short_of_room;
-        for (std::size_t i = 0; i < strips.size(); ++i) {
-            if ((strips[i].family == Family::Weft) == (f == 0)) {
-                if (report.strips[i].too_tight) {
-                    tight.push_back(i);
-                }
-                if (report.strips[i].too_short) {
-                    short_of_room.push_back(i);
-                }
+        for (const Clash& clash : model.tight) {
+            const auto strip = static_cast<std::size_t>(clash.strip);
+            if (std::find(tight.begin(), tight.end(), strip) == tight.end()) {
+                tight.push_back(strip);
             }
         }
-        if (!tight.empty()) {
-            warnings.push_back(fmt::format(
-                "{}: bent more tightly than the {}'s material takes ({:.3g} mm), in {} down to a "
-                "radius of {:.2g} mm",
-                named(strips, tight), name_of(f), family.min_radius_mm, family.tightest,
-                family.least_radius_mm));
-        }
-        if (!short_of_room.empty()) {
-            warnings.push_back(
-                fmt::format("{}: cells shorter than the {:.3g} mm that the way from over to under "
-                            "takes",
-                            named(strips, short_of_room), family.flat_gap_mm));
-        }
-    }
-    if (passes && model.tight_crossings > 0) {
         warnings.push_back(fmt::format(
-            "at {} crossings there is less room than thickness needs, by up to {:.2g} mm: expect "
-            "strips to push each other aside there",
-            model.tight_crossings, model.lacking_mm));
+            "{}: at {} crossings thickness has too little room, by up to {:.2g} mm: the strips "
+            "push each other aside there",
+            named(strips, tight), model.tight_crossings, model.lacking_mm));
     }
     return warnings;
 }

@@ -11,13 +11,6 @@
 
 namespace leafcutter::fab {
 
-// A cell of a strip in which it lies in another strip.
-struct Clash {
-    int strip = 0;
-    int cell = 0;
-    double depth_mm = 0.0;
-};
-
 // Sets the gaps and overlaps of `model`; returns where strips lie in each other, both of them.
 // Every slab is taken apart into convex prisms, two between one rung and the next; two prisms are
 // apart by the largest distance that any separating plane shows, and lie in each other by the

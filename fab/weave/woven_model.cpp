@@ -310,9 +310,10 @@ WovenModel build_woven_model(const geometry::QuadMesh& mesh,
     std::vector<Clash> clashes = measure_gaps(strips, model, context);
     model.tight_crossings = model.overlaps;
     model.tight_sides = model.side_overlaps;
-    for (const Clash& clash : clashes) {
-        model.lacking_mm = std::max(model.lacking_mm, clash.depth_mm);
-    }
+    model.tight = clashes;
+    std::stable_sort(model.tight.begin(), model.tight.end(),
+                     [](const Clash& a, const Clash& b) { return a.depth_mm > b.depth_mm; });
+    model.lacking_mm = model.tight.empty() ? 0.0 : model.tight.front().depth_mm;
     double growth = 1.0;
     for (int round = 0; round < kMostRounds && !clashes.empty(); ++round, growth *= 1.3) {
         thinning.thin(clashes, growth);

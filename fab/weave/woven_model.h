@@ -48,6 +48,13 @@ struct WovenStrip {
     std::vector<WovenSegment> segments;  // One less than rungs; as many if closed.
 };
 
+// A cell of a strip in which it lies in another strip.
+struct Clash {
+    int strip = 0;
+    int cell = 0;
+    double depth_mm = 0.0;
+};
+
 struct WovenModel {
     std::vector<WovenStrip> strips;  // In the order of the strips.
 
@@ -62,6 +69,7 @@ struct WovenModel {
     int tight_crossings = 0;
     int tight_sides = 0;
     double lacking_mm = 0.0;   // As deep as two of them would lie in each other at most.
+    std::vector<Clash> tight;  // Where, of both strips; the deepest come first.
     int narrowed_cells = 0;    // Cells of strips that were drawn narrower,
     double narrowed_mm = 0.0;  // on either side by this much at most.
 };

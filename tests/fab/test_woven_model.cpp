@@ -162,6 +162,8 @@ TEST(WovenModel, CountsStripsThatAreTooThickForTheirGaps) {
     const Woven thick = woven(test::flat_grid({10, 10}, 10.0), rules);
     EXPECT_EQ(thick.model.tight_crossings, 100);
     EXPECT_GT(thick.model.lacking_mm, 0.5);
+    ASSERT_EQ(thick.model.tight.size(), 200U);
+    EXPECT_EQ(thick.model.tight.front().depth_mm, thick.model.lacking_mm);
     // Drawn narrower, they pass.
     EXPECT_GT(thick.model.narrowed_mm, 0.3);
     expect_no_contact(thick);
