@@ -198,8 +198,8 @@ bool Board::is_free(std::size_t item) const {
     return loss_at(item, shape(item), at_[item], std::numeric_limits<float>::min()) <= 0.0F;
 }
 
-std::vector<Clash> Board::clashes() const {
-    std::vector<Clash> found;
+std::vector<PoseClash> Board::clashes() const {
+    std::vector<PoseClash> found;
     for (std::size_t item = 0; item < items(); ++item) {
         const Position& at = at_[item];
         const TurnedPart& part = shape(item);
@@ -235,14 +235,14 @@ float& Board::weight_cell(std::size_t item, std::size_t other) {
     return weights_[row * (edge_column() + 1) + column];
 }
 
-void Board::reweigh(const std::vector<Clash>& clashes) {
+void Board::reweigh(const std::vector<PoseClash>& clashes) {
     constexpr float kForget = 0.95F;
     constexpr float kHeaviest = 1e12F;
     float largest = 0.0F;
-    for (const Clash& clash : clashes) {
+    for (const PoseClash& clash : clashes) {
         largest = std::max(largest, clash.loss);
     }
-    for (const Clash& clash : clashes) {
+    for (const PoseClash& clash : clashes) {
         float& cell = weight_cell(clash.item, clash.other);
         if (cell <= 1.0F) {
             heavy_.push_back(static_cast<std::size_t>(&cell - weights_.data()));

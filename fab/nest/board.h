@@ -54,7 +54,7 @@ struct Extent {
 
 // One overlap. `other` is an item, items + a fixed thing, or items + all fixed things for the
 // sheet's edge.
-struct Clash {
+struct PoseClash {
     std::size_t item = 0;
     std::size_t other = 0;
     float loss = 0.0F;
@@ -90,11 +90,11 @@ public:
     bool is_free(std::size_t item) const;
 
     // All overlaps, each pair once, in a fixed order.
-    std::vector<Clash> clashes() const;
+    std::vector<PoseClash> clashes() const;
     float weight(std::size_t item, std::size_t other) const;
 
     // Guided local search: overlaps that stay grow dearer, others are forgotten.
-    void reweigh(const std::vector<Clash>& clashes);
+    void reweigh(const std::vector<PoseClash>& clashes);
 
     std::int64_t evaluations() const { return evaluations_; }
 

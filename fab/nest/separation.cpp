@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kGain = 0.98;  // What counts as progress.
 
-double total(const std::vector<Clash>& clashes) {
+double total(const std::vector<PoseClash>& clashes) {
     double sum = 0.0;
-    for (const Clash& clash : clashes) {
+    for (const PoseClash& clash : clashes) {
         sum += clash.loss;
     }
     return sum;
@@ -35,7 +35,7 @@ void Separation::begin(const SeparationLimits& limits) {
 // The overlapping items in random order.
 void Separation::line_up() {
     queue_.clear();
-    for (const Clash& clash : clashes_) {
+    for (const PoseClash& clash : clashes_) {
         queue_.push_back(clash.item);
         if (clash.other < board_.items()) {
             queue_.push_back(clash.other);

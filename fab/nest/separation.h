@@ -45,7 +45,7 @@ private:
     Random& random_;
     PoseSearch search_;
     SeparationLimits limits_;
-    std::vector<Clash> clashes_;
+    std::vector<PoseClash> clashes_;
     std::vector<std::size_t> queue_;  // Items of this pass that wait for their move, last first.
     std::vector<Position> best_;
     double best_loss_ = 0.0;
