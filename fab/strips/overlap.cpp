@@ -88,10 +88,11 @@ int cell_of(double coordinate, double cell_mm) {
     return static_cast<int>(std::floor(coordinate / cell_mm));
 }
 
-// Calls visit(cell) for every cell of the segment's bounding box, one step at a time along long
-// ones.
+// Calls visit(cell) for every cell of the segment's bounding box, `pad_mm` around it, one step at a
+// time along long ones.
 template <typename Visit>
-void for_cells(const Vector2d& from, const Vector2d& to, double cell_mm, Visit visit) {
+void for_cells(
+    const Vector2d& from, const Vector2d& to, double cell_mm, Visit visit, double pad_mm = 0.0) {
     const int pieces = 1 + static_cast<int>((to - from).norm() / (4.0 * cell_mm));
     for (int i = 0; i < pieces; ++i) {
         // A hair of overlap, so that rounding never leaves a cell out.
@@ -99,10 +100,10 @@ void for_cells(const Vector2d& from, const Vector2d& to, double cell_mm, Visit v
         const double hi = (i + 1 + 1e-6) / pieces;
         const Vector2d p = from + lo * (to - from);
         const Vector2d q = from + hi * (to - from);
-        for (int x = cell_of(std::min(p.x(), q.x()), cell_mm);
-             x <= cell_of(std::max(p.x(), q.x()), cell_mm); ++x) {
-            for (int y = cell_of(std::min(p.y(), q.y()), cell_mm);
-                 y <= cell_of(std::max(p.y(), q.y()), cell_mm); ++y) {
+        for (int x = cell_of(std::min(p.x(), q.x()) - pad_mm, cell_mm);
+             x <= cell_of(std::max(p.x(), q.x()) + pad_mm, cell_mm); ++x) {
+            for (int y = cell_of(std::min(p.y(), q.y()) - pad_mm, cell_mm);
+                 y <= cell_of(std::max(p.y(), q.y()) + pad_mm, cell_mm); ++y) {
                 visit(Cell{x, y});
             }
         }
@@ -123,6 +124,50 @@ std::vector<GridPoint> on_grid(const Ring& ring) {
         points.push_back(to_grid(point));
     }
     return points;
+}
+
+double squared_distance(const Vector2d& point, const Vector2d& from, const Vector2d& to) {
+    const Vector2d along = to - from;
+    const double length2 = along.squaredNorm();
+    const double t =
+        length2 > 0.0 ? std::clamp((point - from).dot(along) / length2, 0.0, 1.0) : 0.0;
+    return (from + t * along - point).squaredNorm();
+}
+
+// True if no two edges of a simple ring come closer but those that share a corner, or are joined by
+// an edge like the two sides of a step.
+bool keeps_clear(const Ring& ring, double distance_mm) {
+    const std::size_t n = ring.size();
+    const double cell_mm = std::max(mean_edge(ring), distance_mm);
+    std::unordered_map<Cell, std::vector<std::size_t>, HashCell> grid;
+    grid.reserve(2 * n);
+    bool clear = true;
+    const auto apart = [&](std::size_t i, std::size_t j) {
+        const Vector2d &p = ring[i], &q = ring[(i + 1) % n];
+        const Vector2d &r = ring[j], &s = ring[(j + 1) % n];
+        return std::min({squared_distance(p, r, s), squared_distance(q, r, s),
+                         squared_distance(r, p, q), squared_distance(s, p, q)}) >
+               distance_mm * distance_mm;
+    };
+    const auto is_step = [&](std::size_t i, std::size_t j) {
+        const Vector2d one = ring[(i + 1) % n] - ring[i];
+        const Vector2d other = ring[(j + 1) % n] - ring[j];
+        return ((i + 2) % n == j || (j + 2) % n == i) && one.dot(other) > 0.0;
+    };
+    for (std::size_t i = 0; i < n && clear; ++i) {
+        const auto visit = [&](const Cell& cell) {
+            std::vector<std::size_t>& others = grid[cell];
+            for (const std::size_t other : others) {
+                const bool neighbours = other == i || (other + 1) % n == i || (i + 1) % n == other;
+                clear = clear && (neighbours || apart(i, other) || is_step(i, other));
+            }
+            if (others.empty() || others.back() != i) {
+                others.push_back(i);
+            }
+        };
+        for_cells(ring[i], ring[(i + 1) % n], cell_mm, visit, distance_mm / 2.0);
+    }
+    return clear;
 }
 
 bool neighbours_ok(const std::vector<GridPoint>& points) {
@@ -185,6 +230,10 @@ bool is_simple(const Ring& ring) {
 }
 
 bool keeps_gap(const Ring& ring, double gap_mm) {
+    // Grown corners reach as far as the mitre, twice as far as sides.
+    if (keeps_clear(ring, 2.0 * gap_mm)) {
+        return true;
+    }
     ClipperLib::Path path;
     for (const Vector2d& point : ring) {
         const GridPoint grid = to_grid(point);

@@ -309,18 +309,34 @@ private:
         if (verdict != Verdict::Good) {
             return count == 1 ? single_cell(first) : piece;
         }
-        const double lacking = options_.min_length_mm - piece.fitted.length_mm;
-        if (lacking <= 0.0) {
-            return piece;
-        }
+        return piece.fitted.length_mm < options_.min_length_mm ? lengthened(std::move(piece), tabs)
+                                                               : piece;
+    }
+
+    // A piece that is too short with longer tabs at both ends, where there is something to join;
+    // what one end has no room for goes to the other.
+    CutPiece lengthened(CutPiece piece, TabLengths tabs) const {
+        const auto [first, count] = piece.run;
         const bool joined_start =
             strip_.closed || first > 0 || strip_.follows || strip_.glued_start.has_tab;
         const bool joined_end = piece.fitted.end_tab_mm > 0.0;
-        const double share = joined_start && joined_end ? lacking / 2.0 : lacking;
-        tabs.start += joined_start ? share : 0.0;
-        tabs.end += joined_end ? share : 0.0;
-        CutPiece longer = attempt(first, count, tabs, verdict);
-        return verdict == Verdict::Good ? longer : piece;
+        double share = joined_start && joined_end ? 0.5 : 1.0;
+        for (int round = 0; round < 2; ++round) {
+            const double lacking = options_.min_length_mm - piece.fitted.length_mm;
+            if (lacking <= 0.0) {
+                break;
+            }
+            tabs.end += joined_end ? share * lacking : 0.0;
+            tabs.start += joined_start ? share * lacking : 0.0;
+            Verdict verdict = Verdict::Good;
+            CutPiece longer = attempt(first, count, tabs, verdict);
+            if (verdict != Verdict::Good) {
+                break;
+            }
+            piece = std::move(longer);
+            share = 1.0;
+        }
+        return piece;
     }
 
     // One cell that is no good as it is: without tabs, then as it is, then as an oblong.
