@@ -104,12 +104,14 @@ struct NestingParams {
 };
 
 enum class Dialect { Grbl, Marlin, Smoothie };
+enum class Paper { A4, A3, Letter };
 
 struct OutputParams {
     Dialect dialect = Dialect::Grbl;
     std::string device;
-    std::string machine;  // Of the materials' settings; empty: their defaults.
-    bool models = true;   // The woven model as STL, OBJ and glTF.
+    std::string machine;      // Of the materials' settings; empty: their defaults.
+    Paper paper = Paper::A4;  // Of the pages for scissors.
+    bool models = true;       // The woven model as STL, OBJ and glTF.
 };
 
 struct JobParams {

@@ -18,6 +18,7 @@
 #include "fab/nest/family_nest.h"
 #include "fab/package/model_files.h"
 #include "fab/package/package_files.h"
+#include "fab/package/scissors_files.h"
 #include "fab/strips/junctions.h"
 #include "fab/strips/link.h"
 #include "fab/strips/marks.h"
@@ -360,6 +361,10 @@ private:
             gcode.push_back(write_gcode(program, options_.machine, result_.params.output.dialect));
         }
         result_.certificate = certify(result_, gcode, context);
+        if (!result_.certificate.holds) {
+            warnings_.push_back(fmt::format("the certificate does not hold: {}",
+                                            fmt::join(result_.certificate.faults, "; ")));
+        }
         result_.warnings = joined_warnings(warnings_);
         files.push_back({"surface.ply", surface_ply(result_)});
         files.push_back({"quads.obj", quads_obj(result_)});
@@ -378,6 +383,8 @@ private:
             files.push_back({name + ".dxf", write_dxf(program)});
             files.push_back({name + ".gcode", std::move(gcode[i])});
         }
+        std::vector<PackageFile> scissors = scissors_files(result_);
+        std::move(scissors.begin(), scissors.end(), std::back_inserter(files));
         GuideFiles guide = guide_files(result_);
         files.push_back({"guide.html", std::move(guide.html)});
         files.push_back({"guide.pdf", std::move(guide.pdf)});

@@ -150,6 +150,7 @@ void read_output(ObjectReader& reader, fab::OutputParams& output) {
     read_choice(reader, "dialect", output.dialect, kDialects);
     reader.text("device", output.device);
     reader.text("machine", output.machine);
+    read_choice(reader, "paper", output.paper, kPapers);
     reader.boolean("models", output.models);
 }
 

@@ -96,6 +96,12 @@ inline constexpr ObjectReader::Choice<fab::Dialect> kDialects[] = {
     {"smoothie", fab::Dialect::Smoothie},
 };
 
+inline constexpr ObjectReader::Choice<fab::Paper> kPapers[] = {
+    {"a4", fab::Paper::A4},
+    {"a3", fab::Paper::A3},
+    {"letter", fab::Paper::Letter},
+};
+
 template <typename Value, std::size_t kNames>
 void read_choice(ObjectReader& reader,
                  std::string_view key,

@@ -124,6 +124,7 @@ json params_to_json(const fab::JobParams& params) {
     result["output"] = {{"dialect", name_of(kDialects, params.output.dialect)},
                         {"device", params.output.device},
                         {"machine", params.output.machine},
+                        {"paper", name_of(kPapers, params.output.paper)},
                         {"models", params.output.models}};
     return result;
 }

@@ -158,7 +158,9 @@ private:
             mark.from = found.registration.motion.apply(mark.from);
             mark.to = found.registration.motion.apply(mark.to);
         }
-        const MeasuredPiece measured = measure_piece(piece, found.registration.contour, marks);
+        const MeasuredPiece measured =
+            measure_piece(piece, finder_.edge(found.piece), found.registration.contour, marks);
+        certificate_.filled_notches += measured.filled_notches;
         check_ticks(piece, measured);
         const std::vector<WalkedCell> cells = walk_cells(job_.quads, *strips_.at(piece.strip));
         for (std::size_t i = 0; i < measured.cells.size(); ++i) {

@@ -30,6 +30,7 @@ struct Certificate {
     int extra_contours = 0;    // Contours that are no piece.
     int mirrored = 0;
     int ticks_missing = 0;
+    int filled_notches = 0;  // Rung ends in notches narrower than the kerf: not cut, and no fault.
     std::vector<std::string> faults;  // In words; at most kMostFaults, then how many more.
 };
 

@@ -122,7 +122,9 @@ PieceFinder::PieceFinder(std::span<const Piece> pieces, std::array<double, 2> ke
     : pieces_(pieces), kerf_mm_(kerf_mm) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         by_id_.emplace(pieces[i].id, i);
-        keys_.push_back(shape_key(pieces[i].outline));
+        Ring burnt = as_burnt(pieces[i].outline, kerf_mm[index(pieces[i].family)]);
+        outlines_.push_back(burnt.size() < 3 ? pieces[i].outline : std::move(burnt));
+        keys_.push_back(shape_key(outlines_.back()));
         by_area_.push_back(i);
     }
     std::stable_sort(by_area_.begin(), by_area_.end(), [&](std::size_t a, std::size_t b) {
@@ -144,7 +146,7 @@ std::optional<Registration> PieceFinder::lay(const ReadPiece& read, std::size_t 
     if (contour.size() < 3) {
         return std::nullopt;
     }
-    const Ring& outline = pieces_[piece].outline;
+    const Ring& outline = outlines_[piece];
     const std::vector<RigidMotion> told = starts_by_text(read.reading.texts, pieces_[piece]);
     if (!told.empty()) {
         Registration by_text = lay_onto(contour, outline, told);
@@ -161,7 +163,7 @@ std::optional<Registration> PieceFinder::lay_mirrored(const ReadPiece& read,
     if (contour.size() < 3) {
         return std::nullopt;
     }
-    const Ring& outline = pieces_[piece].outline;
+    const Ring& outline = outlines_[piece];
     return lay_onto(contour, outline, starts_by_shape(contour, outline));
 }
 
@@ -186,7 +188,7 @@ std::optional<FoundPiece> PieceFinder::by_shape(const ReadPiece& read,
             if (free[*at] == 0 || kerf_of(*at) != kerf_mm_[family] || !alike(key, keys_[*at])) {
                 continue;
             }
-            const Ring& outline = pieces_[*at].outline;
+            const Ring& outline = outlines_[*at];
             Registration laid = lay_onto(contour, outline, starts_by_shape(contour, outline));
             if (laid.miss_mm <= kLargestOutlineMm &&
                 (!best || laid.miss_mm < best->registration.miss_mm)) {

@@ -47,6 +47,9 @@ public:
     // The piece of that id.
     std::optional<std::size_t> named(const std::string& id) const;
 
+    // Its outline with the notches filled that the beam can't open.
+    const Ring& edge(std::size_t piece) const { return outlines_[piece]; }
+
     // Lays the contour onto the piece; texts on it tell how, or else its shape. None if nothing is
     // left of it without the kerf.
     std::optional<Registration> lay(const ReadPiece& read, std::size_t piece) const;
@@ -63,6 +66,7 @@ private:
     std::span<const Piece> pieces_;
     std::array<double, 2> kerf_mm_;
     std::map<std::string, std::size_t, std::less<>> by_id_;
+    std::vector<Ring> outlines_;  // As burnt.
     std::vector<ShapeKey> keys_;
     std::vector<std::size_t> by_area_;
 };

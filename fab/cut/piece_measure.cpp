@@ -22,8 +22,10 @@ constexpr double kTickSine = 0.035;
 constexpr double kTickReachMm = 3.0;     // From the end.
 constexpr double kTickAsideMm = 0.5;     // From the rung,
 constexpr double kTickAsidePart = 0.25;  // and in parts of the way to the next one.
+constexpr double kPlannedAsideMm = 1e-3;
 constexpr double kLeastTickMm = 0.3;
 constexpr double kLeastCrossing = 0.3;  // Sine of the angle between a tick and a side.
+constexpr double kReachedMm = 2e-3;     // The planned edge passes a rung's end this near.
 constexpr double kLookMm = 1.0;  // How far from the planned end its tick may meet the contour.
 
 struct Tick {
@@ -164,15 +166,21 @@ struct Rungs {
     Polyline right;
 };
 
+struct Edges {
+    const Ring& planned;
+    const Ring& burnt;
+};
+
 Rungs burnt_rungs(const Piece& piece,
-                  const Ring& contour,
+                  const Edges& edges,
                   std::span<const BurntSegment> marks,
                   MeasuredPiece& measured) {
     const std::vector<Tick> planned = planned_lines(piece);
     const std::vector<Tick> burnt = burnt_lines(marks);
-    const auto find = [&](const RungEnd& end) {
+    const auto find = [&](RungEnd end) -> Vector2d {
         std::optional<Tick> tick;
-        if (tick_of(end, planned)) {
+        const auto wanted = tick_of(end, planned);
+        if (wanted && *aside(*wanted, end) <= kPlannedAsideMm) {
             tick = tick_of(end, burnt);
             tick ? ++measured.ticks : ++measured.ticks_missing;
         }
@@ -180,7 +188,14 @@ Rungs burnt_rungs(const Piece& piece,
             measured.largest_tick_miss_mm =
                 std::max(measured.largest_tick_miss_mm, *aside(*tick, end));
         }
-        return burnt_end(end, contour, tick);
+        const Vector2d reached = nearest_on(edges.planned, end.at);
+        const Vector2d beyond = end.at - reached;
+        if (beyond.norm() <= kReachedMm) {
+            return burnt_end(end, edges.burnt, tick);
+        }
+        ++measured.filled_notches;
+        end.at = reached;
+        return burnt_end(end, edges.burnt, std::nullopt) + beyond;
     };
     Rungs rungs;
     for (std::size_t i = 0; i < piece.cut_left.size(); ++i) {
@@ -207,10 +222,11 @@ CellLengths lengths_of(const Rungs& rungs, std::size_t cell, bool fold_rises) {
 }  // namespace
 
 MeasuredPiece measure_piece(const Piece& piece,
+                            const Ring& edge,
                             const Ring& contour,
                             std::span<const BurntSegment> marks) {
     MeasuredPiece measured;
-    const Rungs burnt = burnt_rungs(piece, contour, marks, measured);
+    const Rungs burnt = burnt_rungs(piece, {edge, contour}, marks, measured);
     const Rungs cut{piece.cut_left, piece.cut_right};
     const Rungs exact{piece.left, piece.right};
     for (std::size_t i = 0; i + 1 < exact.left.size(); ++i) {

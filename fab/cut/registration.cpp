@@ -178,6 +178,40 @@ RigidMotion refined(const Ring& contour, const Ring& planned, RigidMotion motion
     return motion;
 }
 
+// The largest ring of what comes out, counter-clockwise.
+Ring offset_ring(const Ring& ring, double by_mm) {
+    ClipperLib::Path path;
+    for (const Vector2d& point : ring) {
+        path.emplace_back(std::llround(point.x() * kUnitsPerMm),
+                          std::llround(point.y() * kUnitsPerMm));
+    }
+    if (!ClipperLib::Orientation(path)) {
+        ClipperLib::ReversePath(path);
+    }
+    ClipperLib::ClipperOffset offset;
+    offset.AddPath(path, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
+    ClipperLib::Paths moved_paths;
+    offset.Execute(moved_paths, by_mm * kUnitsPerMm);
+    Ring result;
+    double largest = 0.0;
+    for (const ClipperLib::Path& contour : moved_paths) {
+        const double area = std::abs(ClipperLib::Area(contour));
+        if (area <= largest) {
+            continue;
+        }
+        largest = area;
+        result.clear();
+        for (const ClipperLib::IntPoint& point : contour) {
+            result.emplace_back(static_cast<double>(point.X) / kUnitsPerMm,
+                                static_cast<double>(point.Y) / kUnitsPerMm);
+        }
+    }
+    if (!result.empty() && signed_area(result) < 0.0) {
+        std::reverse(result.begin(), result.end());
+    }
+    return result;
+}
+
 }  // namespace
 
 Vector2d RigidMotion::apply(const Vector2d& point) const {
@@ -185,32 +219,11 @@ Vector2d RigidMotion::apply(const Vector2d& point) const {
 }
 
 Ring without_kerf(const Ring& ring, double kerf_mm) {
-    ClipperLib::Path path;
-    for (const Vector2d& point : ring) {
-        path.emplace_back(std::llround(point.x() * kUnitsPerMm),
-                          std::llround(point.y() * kUnitsPerMm));
-    }
-    ClipperLib::ClipperOffset offset;
-    offset.AddPath(path, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
-    ClipperLib::Paths shrunk;
-    offset.Execute(shrunk, -kerf_mm / 2.0 * kUnitsPerMm);
-    Ring result;
-    double largest = 0.0;
-    for (const ClipperLib::Path& contour : shrunk) {
-        const double area = std::abs(ClipperLib::Area(contour));
-        if (area > largest) {
-            largest = area;
-            result.clear();
-            for (const ClipperLib::IntPoint& point : contour) {
-                result.emplace_back(static_cast<double>(point.X) / kUnitsPerMm,
-                                    static_cast<double>(point.Y) / kUnitsPerMm);
-            }
-        }
-    }
-    if (!result.empty() && signed_area(result) < 0.0) {
-        std::reverse(result.begin(), result.end());
-    }
-    return result;
+    return offset_ring(ring, -kerf_mm / 2.0);
+}
+
+Ring as_burnt(const Ring& outline, double kerf_mm) {
+    return without_kerf(offset_ring(outline, kerf_mm / 2.0), kerf_mm);
 }
 
 Registration lay_onto(const Ring& contour,

@@ -28,6 +28,9 @@ struct Registration {
 // stays. Counter-clockwise.
 Ring without_kerf(const Ring& ring, double kerf_mm);
 
+// What a beam of that width leaves of a piece planned as `outline`: narrow notches are filled.
+Ring as_burnt(const Ring& outline, double kerf_mm);
+
 // The best of the motions in `starts`, each brought to the least squares of the distances of
 // corners from the planned edge. `starts` is not empty, both rings have three points or more.
 Registration lay_onto(const Ring& contour,

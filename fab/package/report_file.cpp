@@ -280,6 +280,7 @@ json certificate_json(const Certificate& certificate) {
             {"largest_tick_error_mm", certificate.largest_tick_error_mm},
             {"ticks", certificate.ticks},
             {"ticks_missing", certificate.ticks_missing},
+            {"filled_notches", certificate.filled_notches},
             {"matched_by", certificate.matched_by},
             {"pieces", certificate.pieces},
             {"matched_by_id", certificate.matched_by_id},

@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <iterator>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "fab/cut/audit.h"
@@ -137,8 +140,33 @@ TEST(Svg, IsTrueToSizeWithOneGroupPerOperationAndPiecesNamed) {
     EXPECT_NE(svg.find("<title>&lt;job&gt; &amp; &quot;co&quot;, sheet 2"), std::string::npos);
     EXPECT_LT(svg.find("id=\"engrave\""), svg.find("id=\"score\""));
     EXPECT_LT(svg.find("id=\"score\""), svg.find("id=\"cut\""));
-    EXPECT_NE(svg.find("data-piece=\"P2.1\" d=\"M100,395 160,395 160,385Z\""), std::string::npos);
-    EXPECT_NE(svg.find("data-piece=\"W1.1\" d=\"M20,395 20,385\"/>"), std::string::npos);
+    EXPECT_NE(svg.find("id=\"cut-P2.1\" data-piece=\"P2.1\" "
+                       "d=\"M100,395 160,395 160,385Z\"><title>P2.1, cut</title>"),
+              std::string::npos);
+    EXPECT_NE(svg.find("data-piece=\"W1.1\" d=\"M20,395 20,385\">"), std::string::npos);
+}
+
+TEST(Svg, HasALayerOfInkscapePerOperationInTheColoursOfLaserPrograms) {
+    const std::string svg = write_svg(sample_program());
+    for (const auto& [name, colour] :
+         {std::pair("engrave", "#000000"), std::pair("score", "#0000ff"),
+          std::pair("cut", "#ff0000")}) {
+        EXPECT_NE(svg.find(fmt::format("<g id=\"{0}\" inkscape:groupmode=\"layer\" "
+                                       "inkscape:label=\"{0}\" fill=\"none\" stroke=\"{1}\"",
+                                       name, colour)),
+                  std::string::npos)
+            << name;
+    }
+}
+
+TEST(Svg, MakesOneElementOfAllThatAPieceHasInALayer) {
+    CutProgram program = sample_program();
+    program.paths.push_back({Operation::Engrave, {{1.0, 1.0}, {2.0, 1.0}}, "P2.1"});
+    program.paths.push_back({Operation::Engrave, {{3.0, 1.0}, {4.0, 1.0}}, "W1.1"});
+    const std::string svg = write_svg(program);
+    const std::regex element("id=\"engrave-[^\"]*\"");
+    EXPECT_EQ(std::distance(std::sregex_iterator(svg.begin(), svg.end(), element), {}), 2);
+    EXPECT_NE(svg.find("d=\"M10,390 10,386 12,386M3,399 4,399\""), std::string::npos);
 }
 
 TEST(Dxf, HasALayerPerOperationAndClosedPolylines) {
