@@ -82,6 +82,7 @@ TEST(Weave, WritesEveryFileOfThePackage) {
     }
     for (const char* name :
          {"report.json", "surface.ply", "quads.obj", "quality.json", "leaves.json", "strips.json",
+          "woven.stl", "woven.obj", "woven.mtl", "woven.glb",
           "weave.json", "layout.json", "guide.html", "sheets/sheet-001.svg", "sheets/sheet-001.dxf",
           "sheets/sheet-001.gcode"}) {
         EXPECT_THAT(names, Contains(name));
