@@ -73,10 +73,10 @@ private:
 
     std::string family_text(Family family) const {
         const FamilyTotals totals = total_of(job_, family);
-        return fmt::format("{} ({}) in {}, {:.1f} m", counted(static_cast<std::size_t>(totals.strips), "strip"),
-                           family == Family::Weft ? "weft, W" : "warp, P",
-                           counted(static_cast<std::size_t>(totals.pieces), "piece"),
-                           totals.length_mm / 1000.0);
+        return fmt::format(
+            "{} ({}) in {}, {:.1f} m", counted(static_cast<std::size_t>(totals.strips), "strip"),
+            family == Family::Weft ? "weft, W" : "warp, P",
+            counted(static_cast<std::size_t>(totals.pieces), "piece"), totals.length_mm / 1000.0);
     }
 
     void add_facts() {
@@ -87,26 +87,27 @@ private:
             high = high.cwiseMax(point);
         }
         const Eigen::Vector3d size = (high - low) / 10.0;
-        const double weight = total_of(job_, Family::Weft).weight_g +
-                              total_of(job_, Family::Warp).weight_g;
+        const double weight =
+            total_of(job_, Family::Weft).weight_g + total_of(job_, Family::Warp).weight_g;
         const HandTimes times;
         Table table;
         table.columns = {{"", Align::Left, 1.0}, {"", Align::Left, 4.0}};
-        const auto fact = [&](std::string what, std::string value, std::optional<Colour> swatch = {}) {
-            table.rows.push_back({Cell{std::move(what), {}, false, {}},
-                                  Cell{std::move(value), swatch, false, {}}});
+        const auto fact = [&](std::string what, std::string value,
+                              std::optional<Colour> swatch = {}) {
+            table.rows.push_back(
+                {Cell{std::move(what), {}, false, {}}, Cell{std::move(value), swatch, false, {}}});
         };
         fact("Size", fmt::format("{:.1f} x {:.1f} x {:.1f} cm", size.x(), size.y(), size.z()));
         fact("Strips", family_text(Family::Weft), palette_.weft);
         fact("", family_text(Family::Warp), palette_.warp);
         fact("Sheets", fmt::format("{}", job_.layout.sheets.size()));
         fact("Weight", fmt::format("{:.0f} g", std::max(1.0, weight)));
-        fact("Your time",
-             fmt::format("{}: counted as {:.0f} s for each of {} pieces, {:.0f} s for each of {} "
-                         "crossings, {:.0f} s for each joint",
-                         time_text(working_time_s(job_, times)), times.per_piece,
-                         job_.pieces.size(), times.per_crossing, job_.quads.quads.size(),
-                         times.per_joint));
+        fact(
+            "Your time",
+            fmt::format("{}: counted as {:.0f} s for each of {} pieces, {:.0f} s for each of {} "
+                        "crossings, {:.0f} s for each joint",
+                        time_text(working_time_s(job_, times)), times.per_piece, job_.pieces.size(),
+                        times.per_crossing, job_.quads.quads.size(), times.per_joint));
         add(std::move(table));
     }
 
@@ -119,7 +120,9 @@ private:
                          {"Weight", Align::Right, 1.0},  {"Cut", Align::Right, 1.0},
                          {"Machine", Align::Right, 1.2}, {"Cost", Align::Right, 1.4}};
         for (const BillLine& line : job_.bill.lines) {
-            const auto cell = [](std::string words) { return Cell{std::move(words), {}, false, {}}; };
+            const auto cell = [](std::string words) {
+                return Cell{std::move(words), {}, false, {}};
+            };
             table.rows.push_back(
                 {cell(line.name.empty() ? line.material : line.name),
                  cell(fmt::format("{}", line.sheets)), cell(fmt::format("{:.0f} g", line.weight_g)),
@@ -151,10 +154,10 @@ private:
             return;
         }
         heading(1, "How to read a piece");
-        text(fmt::format("W stands for weft, P for warp. {} is piece {} of strip {}. This is how it "
-                         "comes off the sheet:",
-                         piece->id, piece->id.substr(piece->id.find_last_of('.') + 1),
-                         piece->strip));
+        text(fmt::format(
+            "W stands for weft, P for warp. {} is piece {} of strip {}. This is how it "
+            "comes off the sheet:",
+            piece->id, piece->id.substr(piece->id.find_last_of('.') + 1), piece->strip));
         ExplainedPiece explained = explain_piece(index_, *piece);
         add(Figure{{std::move(explained.drawings.front())}, "All of it"});
         add(Figure{{explained.drawings.begin() + 1, explained.drawings.end()},
@@ -172,7 +175,8 @@ private:
         constexpr double kHeight = 3.2;
         heading(2, "All marks");
         Table table;
-        table.columns = {{"", Align::Left, 1.1}, {"Mark", Align::Left, 2.7}, {"Means", Align::Left, 5.2}};
+        table.columns = {
+            {"", Align::Left, 1.1}, {"Mark", Align::Left, 2.7}, {"Means", Align::Left, 5.2}};
         for (const LegendEntry& entry : mark_legend(job_.params.fit)) {
             Drawing drawing{1.0, kHeight + 0.6, {}, entry.symbol};
             Paths lines;
@@ -181,7 +185,8 @@ private:
             for (const Polyline& line : entry.picture) {
                 Points points;
                 for (const Eigen::Vector2d& point : line) {
-                    points.emplace_back(0.3 + kHeight * point.x(), 0.3 + kHeight * (1.0 - point.y()));
+                    points.emplace_back(0.3 + kHeight * point.x(),
+                                        0.3 + kHeight * (1.0 - point.y()));
                     drawing.width_mm = std::max(drawing.width_mm, points.back().x() + 0.3);
                 }
                 lines.lines.push_back(std::move(points));
@@ -203,8 +208,6 @@ private:
                  : "The tab at the end of a piece goes under the start of the next one, so that "
                    "edges and arrows line up, and is glued there. A ring is a strip whose last tab "
                    "goes under its own start.");
-        text("For a stiff object put a dot of glue between the strips at each crossing as well, "
-             "when a region is finished and sits right.");
     }
 
     void add_sheets() {
@@ -225,28 +228,32 @@ private:
         const Sheet& sheet = job_.layout.sheets[number];
         heading(2, fmt::format("Sheet {}", sheet.id));
         const Material& material = sheet.family == "warp" ? job_.warp : job_.weft;
-        std::string line = fmt::format("{}, {:g} x {:g} mm, {}", material.name,
-                                       sheet.size.width_mm, sheet.size.height_mm,
-                                       counted(sheet.placements.size(), "piece"));
+        std::string line =
+            fmt::format("{}, {:g} x {:g} mm, {}", material.name, sheet.size.width_mm,
+                        sheet.size.height_mm, counted(sheet.placements.size(), "piece"));
         if (number < job_.programs.size()) {
             line += fmt::format(", {:.0f} min on the machine",
                                 std::ceil(job_.programs[number].estimated_s / 60.0));
         }
         text(line);
-        add(Figure{{sheet_picture(index_, sheet, {kTextWidthMm, 165.0})}, {}});
+        // Sheets with few pieces may share a page.
+        const double height_mm = sheet.placements.size() > 20 ? 165.0 : 88.0;
+        add(Figure{{sheet_picture(index_, sheet, {kTextWidthMm, height_mm})}, {}});
         Table table;
-        table.columns = {{"Piece", Align::Left, 2.4}, {"Cells", Align::Right, 1.0},
-                         {"Length", Align::Right, 1.6}, {"Region", Align::Right, 1.3}};
+        table.columns = {{"Piece", Align::Left, 2.4},
+                         {"Cells", Align::Right, 1.0},
+                         {"Length", Align::Right, 1.6},
+                         {"Region", Align::Right, 1.3}};
         table.abreast = 3;
         for (const std::string& id : cutting_order(number)) {
             const Piece* piece = index_.piece(id);
             if (piece == nullptr) {
                 continue;
             }
-            table.rows.push_back({Cell{id, {}, true, {}},
-                                  Cell{fmt::format("{}", piece->cell_count), {}, false, {}},
-                                  Cell{fmt::format("{:.0f} mm", piece_length_mm(*piece)), {}, false, {}},
-                                  Cell{regions_text(*piece), {}, false, {}}});
+            table.rows.push_back(
+                {Cell{id, {}, true, {}}, Cell{fmt::format("{}", piece->cell_count), {}, false, {}},
+                 Cell{fmt::format("{:.0f} mm", piece_length_mm(*piece)), {}, false, {}},
+                 Cell{regions_text(*piece), {}, false, {}}});
         }
         add(std::move(table));
     }
@@ -299,18 +306,21 @@ private:
         }
         add(std::move(figure));
         Table table;
-        table.columns = {{"Region", Align::Left, 1.0}, {"What it is", Align::Left, 3.4},
-                         {"Weft strips", Align::Left, 3.0}, {"Warp strips", Align::Left, 3.0}};
+        table.columns = {{"Region", Align::Left, 1.0},
+                         {"What it is", Align::Left, 3.4},
+                         {"Weft strips", Align::Left, 3.0},
+                         {"Warp strips", Align::Left, 3.0}};
         for (std::size_t region = 0; region < regions; ++region) {
             const int part = job_.assembly.regions[region].part;
             std::string shape = region_shape(job_, region);
             if (job_.parts.size() > 1) {
                 shape += fmt::format(", part {}", part + 1);
             }
-            table.rows.push_back({Cell{fmt::format("{}", region + 1), region_colour(region), false, {}},
-                                  Cell{std::move(shape), {}, false, {}},
-                                  Cell{strips_of(region, Family::Weft), {}, false, {}},
-                                  Cell{strips_of(region, Family::Warp), {}, false, {}}});
+            table.rows.push_back(
+                {Cell{fmt::format("{}", region + 1), region_colour(region), false, {}},
+                 Cell{std::move(shape), {}, false, {}},
+                 Cell{strips_of(region, Family::Weft), {}, false, {}},
+                 Cell{strips_of(region, Family::Warp), {}, false, {}}});
         }
         add(std::move(table));
     }

@@ -1,5 +1,5 @@
-// A document as values: headings, text, tables and vector pictures in reading order. Writers turn it
-// into HTML (html.h) and PDF (pdf.h); neither knows what it is about.
+// A document as values: headings, text, tables and vector pictures in reading order. Writers turn
+// it into HTML (html.h) and PDF (pdf.h); neither knows what it is about.
 //
 // Pictures are measured in millimetres on paper, origin at the upper left, y down. All text is
 // UTF-8; writers escape it.
@@ -99,8 +99,8 @@ struct Column {
 
 struct Cell {
     std::string text;
-    std::optional<Colour> swatch;  // A patch of colour before the text.
-    bool tick_box = false;         // An empty box before the text.
+    std::optional<Colour> swatch;        // A patch of colour before the text.
+    bool tick_box = false;               // An empty box before the text.
     std::optional<std::size_t> picture;  // Into Document::shared: above the text.
 };
 

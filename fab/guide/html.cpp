@@ -34,6 +34,7 @@ ul.ticks li { padding-left: 1.5rem; text-indent: -1.5rem; }
 .swatch { display: inline-block; width: .8em; height: .8em; border: 1px solid #777;
           margin-right: .4em; vertical-align: -.06em; }
 .tables { column-gap: 8mm; margin: 0 0 .9rem; } .tables table { margin: 0; }
+.tables td { white-space: nowrap; } td svg { max-width: none; display: block; }
 table { border-collapse: collapse; width: 100%; margin: 0 0 .9rem; font-size: 13px;
         font-variant-numeric: tabular-nums; }
 th { text-align: left; font-weight: 700; border-bottom: 1.3px solid #222; }

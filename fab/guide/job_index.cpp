@@ -76,9 +76,8 @@ std::string JobIndex::place_of(int strip) const {
         job_.quads.addresses[static_cast<std::size_t>(one.quads.front())];
     const geometry::CylinderGrid& grid =
         job_.quads.grids[static_cast<std::size_t>(address.cylinder)];
-    return one.family == Family::Weft
-               ? fmt::format("row {} of {}", address.row + 1, grid.rows)
-               : fmt::format("column {} of {}", address.col + 1, grid.cols);
+    return one.family == Family::Weft ? fmt::format("row {} of {}", address.row + 1, grid.rows)
+                                      : fmt::format("column {} of {}", address.col + 1, grid.cols);
 }
 
 }  // namespace leafcutter::fab::guide

@@ -40,9 +40,10 @@ private:
             }
         }
         if (!numbers.empty()) {
-            text(fmt::format("Too narrow for a row of its own, so left out; what it parted is "
-                             "joined directly: cylinder {}.",
-                             first_of(numbers, 40)));
+            text(
+                fmt::format("Too narrow for a row of its own, so left out; what it parted is "
+                            "joined directly: cylinder {}.",
+                            first_of(numbers, 40)));
         }
     }
 
@@ -62,16 +63,17 @@ private:
             text("Nowhere: the pattern goes on over the whole model.");
             return;
         }
-        text(fmt::format("Between {} of neighbouring crossings the pattern can't go on as it should "
-                         "(the shape does not allow it everywhere). It is no mistake of yours.",
-                         counted(count, "pair")));
+        text(
+            fmt::format("Between {} of neighbouring crossings the pattern can't go on as it should "
+                        "(the shape does not allow it everywhere). It is no mistake of yours.",
+                        counted(count, "pair")));
         Table table;
         table.columns = {{"Crossing", Align::Left, 1.0}, {"beside", Align::Left, 1.0}};
         table.abreast = 3;
         for (std::size_t i = 0; i < std::min(count, kMostBreaks); ++i) {
             const auto& [one, other] = job_.weave.seams[i];
-            table.rows.push_back({Cell{crossing_at(one), {}, false, {}},
-                                  Cell{crossing_at(other), {}, false, {}}});
+            table.rows.push_back(
+                {Cell{crossing_at(one), {}, false, {}}, Cell{crossing_at(other), {}, false, {}}});
         }
         document_.blocks.emplace_back(std::move(table));
         if (count > kMostBreaks) {
@@ -89,11 +91,11 @@ private:
         for (const int quad : flips) {
             names.push_back(crossing_at(quad));
         }
-        text(fmt::format("{} turned over on purpose, so that no strip runs far without being held: "
-                         "{}. Steps and marks count them in.",
-                         flips.size() == 1 ? "One crossing is" :
-                                             fmt::format("{} crossings are", flips.size()),
-                         first_of(names, 60)));
+        text(fmt::format(
+            "{} turned over on purpose, so that no strip runs far without being held: "
+            "{}. Steps and marks count them in.",
+            flips.size() == 1 ? "One crossing is" : fmt::format("{} crossings are", flips.size()),
+            first_of(names, 60)));
     }
 
     void add_warnings() {

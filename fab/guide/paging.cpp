@@ -5,30 +5,20 @@
 
 #include <fmt/format.h>
 
+#include "fab/guide/type.h"
+
 namespace leafcutter::fab::guide {
 
 namespace {
 
-constexpr double kMmPerPoint = 25.4 / 72.0;
 constexpr double kLeft = (kPageWidthMm - kTextWidthMm) / 2.0;
 constexpr double kTop = 22.0;
 constexpr double kBottom = kPageHeightMm - 20.0;
 constexpr double kTableGap = 8.0;
 constexpr double kCellGap = 3.0;
 constexpr double kDrawingGap = 3.0;
-constexpr Colour kInk = {34, 34, 34};
 constexpr Colour kSoft = {85, 85, 85};
 constexpr Colour kHair = {215, 215, 215};
-
-struct Type {
-    double points = 10.0;
-    bool bold = false;
-    Colour colour = kInk;
-    double leading = 1.38;
-
-    double size_mm() const { return points * kMmPerPoint; }
-    double line_mm() const { return size_mm() * leading; }
-};
 
 constexpr Type kBody;
 constexpr Type kLead{12.0, false, kSoft};
@@ -41,43 +31,6 @@ constexpr Type kRunning{8.0, false, kSoft};
 
 Type type_of(const Heading& heading) {
     return heading.level <= 1 ? Type{16.0, true, kInk, 1.25} : Type{12.0, true, kInk, 1.3};
-}
-
-// Breaks text into lines; words wider than a line are broken anywhere between letters.
-std::vector<std::string> wrapped(std::string_view text,
-                                 const Type& type,
-                                 double width_mm,
-                                 const Canvas& canvas) {
-    const auto fits = [&](const std::string& line) {
-        return canvas.text_width_mm(line, type.size_mm(), type.bold) <= width_mm;
-    };
-    std::vector<std::string> lines(1);
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find(' ', begin), text.size());
-        const std::string word(text.substr(begin, end - begin));
-        begin = end + 1;
-        const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
-        if (fits(longer)) {
-            lines.back() = longer;
-            continue;
-        }
-        if (!lines.back().empty()) {
-            lines.emplace_back();
-        }
-        for (std::size_t i = 0; i < word.size();) {
-            std::size_t next = i + 1;
-            while (next < word.size() && (static_cast<unsigned char>(word[next]) & 0xc0U) == 0x80) {
-                ++next;
-            }
-            const std::string letter = word.substr(i, next - i);
-            if (!lines.back().empty() && !fits(lines.back() + letter)) {
-                lines.emplace_back();
-            }
-            lines.back() += letter;
-            i = next;
-        }
-    }
-    return lines;
 }
 
 class Pager {
@@ -217,8 +170,9 @@ private:
             if (list.bullet == Bullet::TickBox) {
                 tick_box(kBody, kLeft, y_);
             } else {
-                set_line(list.bullet == Bullet::Number ? fmt::format("{}.", number) : "\xe2\x80\xa2",
-                         kBody, at, Anchor::Start);
+                set_line(
+                    list.bullet == Bullet::Number ? fmt::format("{}.", number) : "\xe2\x80\xa2",
+                    kBody, at, Anchor::Start);
             }
             set_lines(lines, kBody, kLeft + indent);
             y_ += 0.8;
@@ -306,9 +260,9 @@ private:
         for (std::size_t first = 0; first < rows.size();) {
             need(head + 3.0 * rows[first].height_mm);
             const double room = kBottom - y_ - head;
-            const double total = std::accumulate(
-                rows.begin() + static_cast<std::ptrdiff_t>(first), rows.end(), 0.0,
-                [](double sum, const SetRow& row) { return sum + row.height_mm; });
+            const double total =
+                std::accumulate(rows.begin() + static_cast<std::ptrdiff_t>(first), rows.end(), 0.0,
+                                [](double sum, const SetRow& row) { return sum + row.height_mm; });
             // The lowest runs that hold all that is left, or full pages of it.
             double height = total / static_cast<double>(runs);
             std::vector<std::size_t> counts = fill_runs(rows, first, runs, std::min(height, room));
@@ -322,8 +276,7 @@ private:
             double lowest = y_;
             for (std::size_t run = 0; run < runs && counts[run] > 0; ++run) {
                 const double x = kLeft + static_cast<double>(run) * (width + kTableGap);
-                lowest = std::max(lowest,
-                                  set_run({table, rows, widths}, first, counts[run], x));
+                lowest = std::max(lowest, set_run({table, rows, widths}, first, counts[run], x));
                 first += counts[run];
             }
             y_ = lowest;
@@ -468,9 +421,9 @@ private:
         height += static_cast<double>(lines_of(step.title, kStepTitle, kTextWidthMm - 6.0).size()) *
                   kStepTitle.line_mm();
         for (const std::string& text : step.texts) {
-            height += static_cast<double>(lines_of(text, kBody, kTextWidthMm).size()) *
-                          kBody.line_mm() +
-                      0.6;
+            height +=
+                static_cast<double>(lines_of(text, kBody, kTextWidthMm).size()) * kBody.line_mm() +
+                0.6;
         }
         return height + height_of(step.figure);
     }

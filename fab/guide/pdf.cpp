@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <hpdf.h>
 #include <memory>
 #include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
-#include <hpdf.h>
 
 #include "fab/guide/paging.h"
 #include "fab/guide/winansi.h"
@@ -205,8 +205,7 @@ private:
         HPDF_Page_SetFontAndSize(page_, label.bold ? bold_ : regular_, points(label.size_mm));
         const auto c = static_cast<float>(std::cos(angle));
         const auto s = static_cast<float>(std::sin(angle));
-        HPDF_Page_SetTextMatrix(page_, c, s, -s, c, points(at.x()),
-                                points(kPageHeightMm - at.y()));
+        HPDF_Page_SetTextMatrix(page_, c, s, -s, c, points(at.x()), points(kPageHeightMm - at.y()));
         HPDF_Page_ShowText(page_, letters.c_str());
         HPDF_Page_EndText(page_);
     }

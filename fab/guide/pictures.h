@@ -65,7 +65,10 @@ struct Highlight {
 // shared drawings.
 class ModelPictures {
 public:
-    ModelPictures(const JobResult& job, Views& views, PictureSize size, std::vector<Drawing>& shared);
+    ModelPictures(const JobResult& job,
+                  Views& views,
+                  PictureSize size,
+                  std::vector<Drawing>& shared);
 
     // Where the quads are seen best; the view before is kept if it shows them nearly as well.
     std::size_t view_for(const std::vector<int>& quads);

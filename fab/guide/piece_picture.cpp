@@ -7,8 +7,8 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <polyclipping/clipper.hpp>
 
+#include "fab/guide/clip_box.h"
 #include "fab/strips/labels.h"
 
 namespace leafcutter::fab::guide {
@@ -23,10 +23,12 @@ constexpr Colour kScore = {200, 40, 40};
 // From a piece's plane (y up) into a drawing (y down).
 class Placing {
 public:
-    Placing(double angle, double scale) : cos_(std::cos(angle)), sin_(std::sin(angle)), scale_(scale) {}
+    Placing(double angle, double scale)
+        : cos_(std::cos(angle)), sin_(std::sin(angle)), scale_(scale) {}
 
     Point operator()(const Point& p) const {
-        return Point(scale_ * (cos_ * p.x() - sin_ * p.y()), -scale_ * (sin_ * p.x() + cos_ * p.y())) +
+        return Point(scale_ * (cos_ * p.x() - sin_ * p.y()),
+                     -scale_ * (sin_ * p.x() + cos_ * p.y())) +
                offset_;
     }
     Points operator()(const Points& line) const {
@@ -45,88 +47,6 @@ private:
     double scale_;
     Point offset_ = Point::Zero();
 };
-
-struct Box {
-    Point low = Point::Constant(1e30);
-    Point high = Point::Constant(-1e30);
-
-    void add(const Point& point) {
-        low = low.cwiseMin(point);
-        high = high.cwiseMax(point);
-    }
-    bool contains(const Point& p) const {
-        return p.x() >= low.x() && p.x() <= high.x() && p.y() >= low.y() && p.y() <= high.y();
-    }
-};
-
-// The part of a segment inside of a box (Liang and Barsky).
-std::optional<std::pair<Point, Point>> clipped(const Point& from, const Point& to, const Box& box) {
-    double begin = 0.0;
-    double end = 1.0;
-    const Point way = to - from;
-    for (int axis = 0; axis < 2; ++axis) {
-        const std::array<double, 2> runs = {-way[axis], way[axis]};
-        const std::array<double, 2> rooms = {from[axis] - box.low[axis], box.high[axis] - from[axis]};
-        for (std::size_t i = 0; i < 2; ++i) {
-            if (runs[i] == 0.0) {
-                if (rooms[i] < 0.0) {
-                    return std::nullopt;
-                }
-            } else if (runs[i] < 0.0) {
-                begin = std::max(begin, rooms[i] / runs[i]);
-            } else {
-                end = std::min(end, rooms[i] / runs[i]);
-            }
-        }
-    }
-    if (begin >= end) {
-        return std::nullopt;
-    }
-    return std::pair<Point, Point>(from + begin * way, from + end * way);
-}
-
-void append_clipped(std::vector<Points>& lines, const Points& line, bool closed, const Box& box) {
-    const std::size_t segments = line.size() - (closed || line.empty() ? 0 : 1);
-    for (std::size_t i = 0; i < segments; ++i) {
-        const auto part = clipped(line[i], line[(i + 1) % line.size()], box);
-        if (!part) {
-            continue;
-        }
-        if (!lines.empty() && !lines.back().empty() && i > 0 && lines.back().back() == part->first) {
-            lines.back().push_back(part->second);
-        } else {
-            lines.push_back({part->first, part->second});
-        }
-    }
-}
-
-std::vector<Points> area_inside(const Points& ring, const Box& box) {
-    constexpr double kSteps = 1000.0;
-    const auto point_of = [](const Point& p) {
-        return ClipperLib::IntPoint(std::llround(p.x() * kSteps), std::llround(p.y() * kSteps));
-    };
-    ClipperLib::Path subject;
-    for (const Point& point : ring) {
-        subject.push_back(point_of(point));
-    }
-    const ClipperLib::Path window = {point_of(box.low), point_of({box.high.x(), box.low.y()}),
-                                     point_of(box.high), point_of({box.low.x(), box.high.y()})};
-    ClipperLib::Clipper clipper;
-    clipper.AddPath(subject, ClipperLib::ptSubject, true);
-    clipper.AddPath(window, ClipperLib::ptClip, true);
-    ClipperLib::Paths parts;
-    clipper.Execute(ClipperLib::ctIntersection, parts, ClipperLib::pftNonZero,
-                    ClipperLib::pftNonZero);
-    std::vector<Points> areas;
-    for (const ClipperLib::Path& part : parts) {
-        Points area;
-        for (const ClipperLib::IntPoint& p : part) {
-            area.emplace_back(static_cast<double>(p.X) / kSteps, static_cast<double>(p.Y) / kSteps);
-        }
-        areas.push_back(std::move(area));
-    }
-    return areas;
-}
 
 Point rung_middle(const Piece& piece, std::size_t rung) {
     return (piece.cut_left[rung] + piece.cut_right[rung]) / 2.0;
@@ -195,16 +115,15 @@ Drawing whole_piece(const Piece& piece, const Colour& colour, PictureSize size) 
         extent.add(unit(point));
     }
     const Point span = (extent.high - extent.low).cwiseMax(1e-6);
-    const double scale = std::min({1.0, (size.width_mm - 1.0) / span.x(),
-                                   (size.height_mm - 1.0) / span.y()});
+    const double scale =
+        std::min({1.0, (size.width_mm - 1.0) / span.x(), (size.height_mm - 1.0) / span.y()});
     Placing place(angle, scale);
     Box box;
     Box drawn;
     for (const Point& point : piece.outline) {
         drawn.add(place(point));
     }
-    place.move((drawn.low + drawn.high) / 2.0,
-               {size.width_mm / 2.0, scale * span.y() / 2.0 + 0.5});
+    place.move((drawn.low + drawn.high) / 2.0, {size.width_mm / 2.0, scale * span.y() / 2.0 + 0.5});
     box.low = Point::Zero();
     box.high = {size.width_mm, scale * span.y() + 1.0};
     Drawing drawing{size.width_mm, scale * span.y() + 1.0, {}, "Piece " + piece.id};
@@ -245,9 +164,8 @@ private:
         const Point way = end - begin;
         const double tab = of_end_ ? piece_.end_tab.length_mm : piece_.start_tab.length_mm;
         const double width = (piece_.cut_left[from] - piece_.cut_right[from]).norm();
-        const double scale =
-            std::min({4.0, (size_.width_mm - 4.0) / (way.norm() + tab + 1.0),
-                      0.55 * (size_.height_mm - kTop) / std::max(width, 1e-6)});
+        const double scale = std::min({4.0, (size_.width_mm - 4.0) / (way.norm() + tab + 1.0),
+                                       0.55 * (size_.height_mm - kTop) / std::max(width, 1e-6)});
         Placing place(-std::atan2(way.y(), way.x()), scale);
         const double y = (size_.height_mm + kTop) / 2.0;
         if (of_end_) {
@@ -334,8 +252,7 @@ std::vector<Callout> callouts_of(const Piece& piece, const Closeup& closeup, boo
     if (tab.length_mm > 0.0) {
         const std::size_t last = of_end ? piece.cut_left.size() - 1 : 0;
         const std::size_t inner = of_end ? last - 1 : 1;
-        const Point out =
-            (rung_middle(piece, last) - rung_middle(piece, inner)).normalized();
+        const Point out = (rung_middle(piece, last) - rung_middle(piece, inner)).normalized();
         add(rung_middle(piece, last) + 0.55 * tab.length_mm * out,
             tab.slit_width_mm > 0.0
                 ? "The tab: its arrow goes through the slit of the next piece."
@@ -344,7 +261,10 @@ std::vector<Callout> callouts_of(const Piece& piece, const Closeup& closeup, boo
     return found;
 }
 
-void append_number(Drawing& drawing, const Point& from, const Point& to, const std::string& number) {
+void append_number(Drawing& drawing,
+                   const Point& from,
+                   const Point& to,
+                   const std::string& number) {
     Paths leader;
     leader.closed = false;
     leader.stroke = Stroke{kInk, 0.2, false};
@@ -396,8 +316,8 @@ Drawing closeup_of(const Piece& piece,
     const double least = 6.0;
     for (std::size_t i = 0; i < callouts.size(); ++i) {
         const double behind = least * static_cast<double>(callouts.size() - 1 - i);
-        const double x = std::min(std::max(callouts[i].at.x(), last_x + least),
-                                  size.width_mm - 2.4 - behind);
+        const double x =
+            std::min(std::max(callouts[i].at.x(), last_x + least), size.width_mm - 2.4 - behind);
         last_x = std::max(x, 2.4);
         legend.push_back(callouts[i].text);
         append_number(drawing, {last_x, 2.6}, callouts[i].at, fmt::format("{}", legend.size()));
@@ -441,71 +361,10 @@ ExplainedPiece explain_piece(const JobIndex& index, const Piece& piece) {
     const Colour& colour = palette.of(piece.family);
     ExplainedPiece explained;
     explained.drawings.push_back(whole_piece(piece, colour, {kTextWidthMm, 36.0}));
-    const PictureSize size{(kTextWidthMm - 3.0) / 2.0, 42.0};
+    const PictureSize size{(kTextWidthMm - 3.0) / 2.0, 38.0};
     explained.drawings.push_back(closeup_of(piece, colour, false, size, explained.legend));
     explained.drawings.push_back(closeup_of(piece, colour, true, size, explained.legend));
     return explained;
-}
-
-Drawing sheet_picture(const JobIndex& index, const Sheet& sheet, PictureSize size) {
-    const bool upright = sheet.size.height_mm > 1.15 * sheet.size.width_mm;
-    const double scale = std::min((size.width_mm - 1.0) / sheet.size.width_mm,
-                                  (size.height_mm - 1.0) / sheet.size.height_mm);
-    Drawing drawing{upright ? scale * sheet.size.width_mm + 1.0 : size.width_mm,
-                    scale * sheet.size.height_mm + 1.0,
-                    {},
-                    fmt::format("Sheet {}", sheet.id)};
-    const auto place = [&](const Point& p) {
-        return Point(scale * p.x() + 0.5, scale * (sheet.size.height_mm - p.y()) + 0.5);
-    };
-    const Palette palette = palette_of(index.job());
-    Paths edge;
-    edge.stroke = Stroke{Colour{150, 150, 150}, 0.25, false};
-    edge.lines = {{place({0.0, 0.0}), place({sheet.size.width_mm, 0.0}),
-                   place({sheet.size.width_mm, sheet.size.height_mm}),
-                   place({0.0, sheet.size.height_mm})}};
-    drawing.shapes.emplace_back(std::move(edge));
-    std::map<int, Paths> outlines;  // Per family.
-    std::vector<Label> labels;
-    for (const Placement& placement : sheet.placements) {
-        const Piece* piece = index.piece(placement.piece);
-        if (piece == nullptr || piece->cut_left.empty()) {
-            continue;
-        }
-        Paths& paths = outlines[static_cast<int>(piece->family)];
-        paths.fill = mixed(palette.of(piece->family), kWhite, 0.7);
-        paths.stroke = Stroke{mixed(palette.of(piece->family), kBlack, 0.5), 0.15, false};
-        Points ring;
-        for (const Point& point : piece->outline) {
-            ring.push_back(place(placement.apply(point)));
-        }
-        paths.lines.push_back(std::move(ring));
-        const std::size_t cell = (piece->cut_left.size() - 1) / 2;
-        const std::size_t next = std::min(cell + 1, piece->cut_left.size() - 1);
-        const Point one = place(placement.apply(rung_middle(*piece, cell)));
-        const Point two = place(placement.apply(rung_middle(*piece, next)));
-        const double width =
-            scale * (piece->cut_left[cell] - piece->cut_right[cell]).norm();
-        double angle = -std::atan2(two.y() - one.y(), two.x() - one.x());
-        if (std::abs(angle) > 0.5 * std::numbers::pi + 0.01) {
-            angle += angle > 0.0 ? -std::numbers::pi : std::numbers::pi;
-        }
-        Label label;
-        label.text = piece->id;
-        label.size_mm = std::clamp(0.62 * width, 1.1, 2.6);
-        label.anchor = Anchor::Middle;
-        label.angle_deg = angle * 180.0 / std::numbers::pi;
-        label.at = (one + two) / 2.0 +
-                   0.35 * label.size_mm * Point(std::sin(angle), std::cos(angle));
-        labels.push_back(std::move(label));
-    }
-    for (auto& [family, paths] : outlines) {
-        drawing.shapes.emplace_back(std::move(paths));
-    }
-    for (Label& label : labels) {
-        drawing.shapes.emplace_back(std::move(label));
-    }
-    return drawing;
 }
 
 }  // namespace leafcutter::fab::guide

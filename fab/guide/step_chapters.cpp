@@ -73,6 +73,11 @@ private:
             "one, and fold them over it again. That always works in this order; where it can't, "
             "the step says \"thread\".",
             TextStyle::Body});
+        document_.blocks.emplace_back(
+            Paragraph{"For a stiff object put a dot of glue between the strips at each crossing as "
+                      "well, when "
+                      "a region is finished and sits right.",
+                      TextStyle::Body});
     }
 
     std::vector<int> quads_of_region(int region) const {
@@ -97,10 +102,9 @@ private:
                 (strip.family == Family::Weft ? weft : warp).push_back(strip.id);
             }
         }
-        document_.blocks.emplace_back(
-            Paragraph{fmt::format("{}. Strips: {}.", region_shape(job_, number),
-                                  strips_text(weft, warp)),
-                      TextStyle::Body});
+        document_.blocks.emplace_back(Paragraph{
+            fmt::format("{}. Strips: {}.", region_shape(job_, number), strips_text(weft, warp)),
+            TextStyle::Body});
     }
 
     static std::string strips_text(std::vector<std::string> weft, std::vector<std::string> warp) {
@@ -227,8 +231,8 @@ private:
             const Point at(static_cast<double>(i / lines) * column_mm + 0.5,
                            kLine * static_cast<double>(i % lines + 1) - 1.0);
             const double side = 2.3;
-            boxes.lines.push_back({at, at + Point(side, 0.0), at + Point(side, -side),
-                                   at + Point(0.0, -side)});
+            boxes.lines.push_back(
+                {at, at + Point(side, 0.0), at + Point(side, -side), at + Point(0.0, -side)});
             Label label;
             label.text = joint_name(joint);
             if (joint.tucked > 0) {

@@ -67,8 +67,7 @@ private:
     StepText base() const {
         const std::vector<std::string> ids = ids_of(step_.strips);
         if (ids.size() == 1) {
-            return {fmt::format("Lay {}", ids.front()),
-                    {"Writing up. It crosses nothing yet."}};
+            return {fmt::format("Lay {}", ids.front()), {"Writing up. It crosses nothing yet."}};
         }
         StepText text{fmt::format("Lay {} side by side", id_ranges(ids)),
                       {"Writing up, all arrows the same way, in this order from left to right. A "
@@ -76,9 +75,8 @@ private:
         const Strip& first = strip(step_.strips.front());
         const Strip& last = strip(step_.strips.back());
         if (are_beside(first, last) && ids.size() > 2) {
-            text.texts.push_back(
-                fmt::format("Later, when the rings close, {} comes to lie beside {}.", last.id,
-                            first.id));
+            text.texts.push_back(fmt::format(
+                "Later, when the rings close, {} comes to lie beside {}.", last.id, first.id));
         }
         return text;
     }
@@ -135,10 +133,10 @@ private:
 
     std::string joint_text(const AssemblyMove& joint) const {
         const std::string tucked =
-            joint.tucked > 0 ? fmt::format(" Tuck the tab in under {}.",
-                                           counted(static_cast<std::size_t>(joint.tucked),
-                                                   "crossing strip"))
-                             : "";
+            joint.tucked > 0
+                ? fmt::format(" Tuck the tab in under {}.",
+                              counted(static_cast<std::size_t>(joint.tucked), "crossing strip"))
+                : "";
         const std::string what =
             joint.piece == joint.onto
                 ? std::string(slots() ? "put its tab through the slit at its own start"
@@ -170,7 +168,8 @@ private:
 
     StepText weave_many() const {
         StepText text;
-        text.title = fmt::format("Weave in {}, one after the other", id_ranges(ids_of(step_.strips)));
+        text.title =
+            fmt::format("Weave in {}, one after the other", id_ranges(ids_of(step_.strips)));
         for (const int number : step_.moves) {
             const AssemblyMove& one = move(number);
             if (lays(one)) {
@@ -196,11 +195,10 @@ private:
             text.texts.push_back(joint_text(one));
             return text;
         }
-        const std::string where =
-            step_.region == step_.other_region
-                ? fmt::format("in region {}", step_.region + 1)
-                : fmt::format("between regions {} and {}", step_.region + 1,
-                              step_.other_region + 1);
+        const std::string where = step_.region == step_.other_region
+                                      ? fmt::format("in region {}", step_.region + 1)
+                                      : fmt::format("between regions {} and {}", step_.region + 1,
+                                                    step_.other_region + 1);
         text.title = fmt::format("{} {}", counted(step_.moves.size(), "joint"), where);
         text.texts.push_back(slots() ? "Put each tab through the slit of the piece named with it."
                                      : "Glue each tab under the start of the piece named with it.");

@@ -67,8 +67,7 @@ private:
     }
 
     bool goes_on(StepKind kind, const AssemblyMove& move) const {
-        return !steps_.empty() && steps_.back().kind == kind &&
-               steps_.back().region == move.region;
+        return !steps_.empty() && steps_.back().kind == kind && steps_.back().region == move.region;
     }
 
     void add(std::size_t number) {

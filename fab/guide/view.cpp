@@ -170,8 +170,7 @@ private:
             }
         }
         ClipperLib::Paths whole;
-        clipper.Execute(ClipperLib::ctUnion, whole, ClipperLib::pftNonZero,
-                        ClipperLib::pftNonZero);
+        clipper.Execute(ClipperLib::ctUnion, whole, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
         // Slits as narrow as a pixel, where hidden parts were cut away, are closed.
         const double pixel = image_.pixel_size() * steps_;
         offset.AddPaths(whole, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);

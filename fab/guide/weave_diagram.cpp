@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -15,7 +17,7 @@ constexpr Colour kInk = {34, 34, 34};
 constexpr double kNames = 13.0;  // Left margin, for ids of rows.
 constexpr double kPitch = 5.6;   // Widest distance of strips.
 constexpr double kLeastPitch = 4.6;
-constexpr double kBand = 0.39;      // Half the width of a strip, in pitches.
+constexpr double kBand = 0.39;  // Half the width of a strip, in pitches.
 constexpr double kTextHeight = 2.3;
 constexpr int kRowsBeside = 2;
 constexpr std::size_t kLastColumns = 4;  // Shown behind a gap.
@@ -43,7 +45,8 @@ Window window_of(std::size_t count, double width_mm) {
     const double room = width_mm - kNames - 1.0;
     const auto most = static_cast<std::size_t>(room / kLeastPitch);
     if (count <= most) {
-        window.pitch = std::min(kPitch, room / static_cast<double>(std::max<std::size_t>(1, count)));
+        window.pitch =
+            std::min(kPitch, room / static_cast<double>(std::max<std::size_t>(1, count)));
         for (std::size_t i = 0; i < count; ++i) {
             window.columns.push_back(i);
         }
@@ -106,9 +109,7 @@ private:
         return std::find(strips_.fresh.begin(), strips_.fresh.end(), strip) != strips_.fresh.end();
     }
 
-    Family across() const {
-        return strip_.family == Family::Weft ? Family::Warp : Family::Weft;
-    }
+    Family across() const { return strip_.family == Family::Weft ? Family::Warp : Family::Weft; }
 
     bool follow(int forward) {
         way_.clear();
@@ -160,8 +161,7 @@ private:
 
     bool is_there(int quad, Family family) const {
         const auto& laid = family == Family::Weft ? progress_.weft : progress_.warp;
-        return laid[static_cast<std::size_t>(quad)] != 0 ||
-               is_fresh(index_.strip_at(quad, family));
+        return laid[static_cast<std::size_t>(quad)] != 0 || is_fresh(index_.strip_at(quad, family));
     }
 
     bool row_is_there(int row) const {
@@ -296,9 +296,9 @@ private:
     void draw_names() {
         for (std::size_t place = 0; place < window_.columns.size(); ++place) {
             const std::size_t column = window_.columns[place];
-            Label label = small_label(name_at(way_[column].quad, across()),
-                                      {window_.x_of(place) + 0.35 * kTextHeight, top_ + 0.2},
-                                      Anchor::Start);
+            Label label =
+                small_label(name_at(way_[column].quad, across()),
+                            {window_.x_of(place) + 0.35 * kTextHeight, top_ + 0.2}, Anchor::Start);
             label.angle_deg = 90.0;
             drawing_->shapes.emplace_back(std::move(label));
         }
@@ -330,14 +330,13 @@ private:
         rings.stroke = Stroke{kInk, 0.35, false};
         for (std::size_t place = 0; place < window_.columns.size(); ++place) {
             const auto column = static_cast<int>(window_.columns[place]);
-            if (std::find(strips_.held.begin(), strips_.held.end(), column) !=
-                strips_.held.end()) {
+            if (std::find(strips_.held.begin(), strips_.held.end(), column) != strips_.held.end()) {
                 const Point at(window_.x_of(place), y_of(0));
                 Points ring;
                 for (int i = 0; i < 16; ++i) {
-                    const double angle = i * 3.14159265358979 / 8.0;
-                    ring.emplace_back(at +
-                                      0.3 * window_.pitch * Point(std::cos(angle), std::sin(angle)));
+                    const double angle = i * std::numbers::pi / 8.0;
+                    ring.emplace_back(at + 0.3 * window_.pitch *
+                                               Point(std::cos(angle), std::sin(angle)));
                 }
                 rings.lines.push_back(std::move(ring));
             }
@@ -391,8 +390,7 @@ Drawing base_diagram(const JobIndex& index, const std::vector<int>& strips, Pict
         arrow.lines = {{{x - 0.8, kTop + 4.2}, {x, kTop + 2.4}, {x + 0.8, kTop + 4.2}}};
         arrow.fill = kWhite;
         drawing.shapes.emplace_back(std::move(arrow));
-        Label label =
-            small_label(strip.id, {x + 0.35 * kTextHeight, kTop - 0.8}, Anchor::Start);
+        Label label = small_label(strip.id, {x + 0.35 * kTextHeight, kTop - 0.8}, Anchor::Start);
         label.angle_deg = 90.0;
         label.bold = true;
         drawing.shapes.emplace_back(std::move(label));

@@ -7,8 +7,8 @@ double working_time_s(const JobResult& job, const HandTimes& times) {
                      times.per_crossing * static_cast<double>(job.quads.quads.size());
     for (const AssemblyMove& move : job.assembly.moves) {
         const bool joins = move.kind == MoveKind::Close || move.kind == MoveKind::Join;
-        seconds += joins ? times.per_joint
-                         : times.per_threaded * static_cast<double>(move.held.size());
+        seconds +=
+            joins ? times.per_joint : times.per_threaded * static_cast<double>(move.held.size());
     }
     return seconds;
 }
