@@ -81,7 +81,8 @@ void LihuiyuSession::start(std::string_view program) {
     progress_ = {};
     progress_.outcome = JobOutcome::Running;
     progress_.lines_total = job.packets.size();
-    finishing_ = holding_ = held_ = board_holds_ = false;
+    finishing_ = finish_told_ = false;
+    holding_ = held_ = board_holds_ = false;
     status_.message.clear();
     motion_end_ = now_;
     show_state();

@@ -126,8 +126,9 @@ private:
     Time sent_at_;
     int resends_ = 0;
 
-    Time motion_end_;  // When the board can have done all that it has taken.
-    bool finishing_ = false;
+    Time motion_end_;           // When the board can have done all that it has taken.
+    bool finishing_ = false;    // Every packet is taken.
+    bool finish_told_ = false;  // By the board, maybe while the last packet was under way.
     bool holding_ = false;      // Wanted.
     bool held_ = false;         // Had.
     bool board_holds_ = false;  // By PN; without it the job hadn't begun.

@@ -151,6 +151,7 @@ void LihuiyuSession::answer(std::uint8_t status) {
         status_is(BoardStatus::CrcError)) {
         attached_ = true;
     }
+    finish_told_ = finish_told_ || (says_finished(status) && job_runs() && packets_.empty());
     if (stopping_) {
         answer_stop(status);
     } else if (status_is(BoardStatus::Ok)) {
@@ -330,10 +331,9 @@ void LihuiyuSession::watch_end() {
         finishing_ = true;
         return;
     }
-    const bool fresh = answered_ > asked_at_packet_;
     // Some boards never say that they have finished.
     const bool must_have = status_is(BoardStatus::Ok) && now_ > motion_end_ + kEndMargin;
-    if (fresh && (says_finished(last_status_) || must_have)) {
+    if (finish_told_ || must_have) {
         finishing_ = false;
         progress_.outcome = JobOutcome::Done;
     }

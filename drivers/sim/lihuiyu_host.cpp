@@ -9,9 +9,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// At speed 0 so many simulated seconds pass with every word of the sender, or while it is silent
-// for kIdleWait: it sees what happens in between, however slow it is.
-constexpr double kFastStepS = 0.1;
+// At speed 0 time passes with every word of the sender, or while it is silent for kIdleWait: it
+// sees what happens in between, however slow it is.
 constexpr std::chrono::milliseconds kBusyWait{1};
 constexpr std::chrono::milliseconds kIdleWait{60};
 
@@ -80,7 +79,11 @@ void LihuiyuHost::turn(double wall_s) {
         const std::lock_guard lock(mutex_);
         said = machine_.feed(heard);
         const bool look = !resting || !heard.empty();
-        machine_.advance(speed_ > 0.0 ? wall_s * speed_ : look ? kFastStepS : 0.0);
+        if (speed_ > 0.0) {
+            machine_.advance(wall_s * speed_);
+        } else if (look) {
+            machine_.hurry();
+        }
         if (burn_file_.is_open() && !resting && machine_.at_rest()) {
             machine_.beam_log().flush(burn_file_);
         }

@@ -109,10 +109,13 @@ std::uint8_t LihuiyuMachine::status() const {
     return said(last_was_bad_ ? BoardStatus::CrcError : BoardStatus::Ok);
 }
 
+bool LihuiyuMachine::homing() const {
+    return motion_ && motion_->action.kind == BoardAction::Kind::Home;
+}
+
 bool LihuiyuMachine::busy() const {
-    const bool homing = motion_ && motion_->action.kind == BoardAction::Kind::Home;
     return queue_.size() >= options_.packets_held * kPayloadBytes || now_s_ < busy_until_s_ ||
-           (homing && options_.busy_while_homing);
+           (homing() && options_.busy_while_homing);
 }
 
 // Returns whether a fault has swallowed the packet.
@@ -165,7 +168,7 @@ void LihuiyuMachine::take_packet(std::string_view payload, unsigned char crc) {
         violate("a packet while the board is busy");
         return;
     }
-    if (motion_ && motion_->action.kind == BoardAction::Kind::Home) {
+    if (homing()) {
         violate("a packet while the machine homes");
     }
     queue_.insert(queue_.end(), payload.begin(), payload.end());
@@ -218,6 +221,15 @@ void LihuiyuMachine::advance(double seconds) {
             stand_for(end - now_s_);
         }
     }
+}
+
+void LihuiyuMachine::hurry() {
+    constexpr double kTurnS = 0.1;
+    constexpr int kMostTurns = 20;
+    int turns = 0;
+    do {
+        advance(kTurnS);
+    } while (busy() && !homing() && !paused_ && ++turns < kMostTurns);
 }
 
 bool LihuiyuMachine::at_rest() const {

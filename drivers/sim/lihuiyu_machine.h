@@ -65,6 +65,10 @@ public:
     std::string feed(std::string_view bytes);
     void advance(double seconds);
 
+    // A tenth of a second, or more as long as it is busy with data, 2 s at most: for a sender that
+    // isn't to wait.
+    void hurry();
+
     // Nothing moves and nothing is left to do.
     bool at_rest() const;
 
@@ -96,6 +100,7 @@ private:
     bool disturb();
     std::uint8_t status() const;
     bool busy() const;
+    bool homing() const;
     void stop();
     void perform(BoardAction action);
     void begin_motion(const BoardAction& action, const StepPlace& to, double seconds);

@@ -18,8 +18,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr double kFastStepS = 0.1;  // Between two questions at speed 0.
-
 class SimUsbPipe final : public UsbPipe {
 public:
     explicit SimUsbPipe(const SimLihuiyuOptions& options)
@@ -68,7 +66,11 @@ private:
         const Clock::time_point now = Clock::now();
         const double passed_s = std::chrono::duration<double>(now - before_).count();
         before_ = now;
-        machine_.advance(speed_ > 0.0 ? passed_s * speed_ : kFastStepS);
+        if (speed_ > 0.0) {
+            machine_.advance(passed_s * speed_);
+        } else {
+            machine_.hurry();
+        }
         if (!machine_.violations().empty()) {
             const Violation& first = machine_.violations().front();
             throw LinkLost(

@@ -272,6 +272,31 @@ TEST(LihuiyuSession, IsDoneOnlyWhenTheMachineIsAlsoAfterAHoldInTheLastMove) {
     EXPECT_NEAR(bench.machine().position_mm().x_mm, 0.0, 0.02);
 }
 
+// The board is done before it has confirmed the last packet, and says so for 390 ms only.
+TEST(LihuiyuSession, HearsThatTheBoardHasFinishedWhileTheLastPacketIsUnderWay) {
+    LihuiyuBench bench;
+    ASSERT_TRUE(bench.home());
+    bool last = false;
+    bench.to_board = [&](std::string bytes) {
+        const JobProgress& progress = bench.session().progress();
+        last = last || progress.lines_sent == progress.lines_total;
+        return bytes;
+    };
+    // From the last packet on no answer comes but "finished", and that once it is.
+    bench.to_host = [&](std::string bytes) {
+        const bool waits = last && bench.machine().programs_finished() == 0;
+        if (waits && !bytes.empty()) {
+            bytes[1] = '\xEE';
+        }
+        return bytes;
+    };
+    bench.session().start("M4\nG1 X1 Y0 S1 F600\nG0 X300 Y200\n");
+    ASSERT_TRUE(bench.run_until([&] { return bench.machine().programs_finished() == 1; }));
+    const double finished_s = bench.machine().now_s();
+    EXPECT_EQ(bench.finish_job(), JobOutcome::Done);
+    EXPECT_LT(bench.machine().now_s() - finished_s, 1.0);
+}
+
 struct Fatal {
     LihuiyuFault::Kind kind;
     const char* reason;
