@@ -93,6 +93,7 @@ json thickness_record(const JobResult& job) {
     };
     return {{"clearance_mm", report.clearance_mm},
             {"clearance_to_pass_mm", report.need.pass_mm},
+            {"clearance_for_joints_mm", report.need.joint_mm},
             {"clearance_to_lie_flat_mm", report.need.flat_mm},
             {"weft", family_record(report.families[0])},
             {"warp", family_record(report.families[1])},

@@ -85,12 +85,13 @@ ClearanceNeed clearance_need(const SheetFeel& weft, const SheetFeel& warp) {
     const CrimpRule of_warp{warp.thickness_mm, weft.thickness_mm, 0.0, warp.min_radius_mm};
     ClearanceNeed need;
     need.pass_mm = kPassingSlack * std::max(weft.thickness_mm, warp.thickness_mm) / 2.0;
+    need.joint_mm = std::max(weft.thickness_mm, warp.thickness_mm);
     need.flat_mm = std::max({need.pass_mm, flat_gap_mm(of_weft) / 2.0, flat_gap_mm(of_warp) / 2.0});
     return need;
 }
 
 double automatic_clearance_mm(const ClearanceNeed& need, double strip_width_mm) {
-    return std::max(need.pass_mm, std::min(need.flat_mm, kAutomaticPart * strip_width_mm));
+    return std::max(need.joint_mm, std::min(need.flat_mm, kAutomaticPart * strip_width_mm));
 }
 
 }  // namespace leafcutter::fab

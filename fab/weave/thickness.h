@@ -60,7 +60,8 @@ std::vector<double> crimp_extra_mm(std::span<const Crossing> crossings,
 // woven.
 struct ClearanceNeed {
     double pass_mm = 0.0;  // A strip fits through the gap at all; a little more than its thickness.
-    double flat_mm = 0.0;  // Strips lie flat on each other, bent no tighter than they may.
+    double joint_mm = 0.0;  // So do joints, where a strip lies doubled.
+    double flat_mm = 0.0;   // Strips lie flat on each other, bent no tighter than they may.
 };
 
 struct SheetFeel {
@@ -71,7 +72,7 @@ struct SheetFeel {
 ClearanceNeed clearance_need(const SheetFeel& weft, const SheetFeel& warp);
 
 // The clearance for strips of this width if nobody names one: flat, if that takes no more than a
-// twentieth of the width, but always enough to pass.
+// twentieth of the width, but always enough for joints to pass.
 double automatic_clearance_mm(const ClearanceNeed& need, double strip_width_mm);
 
 }  // namespace leafcutter::fab

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -95,8 +96,12 @@ TEST(Clearance, LetsTheThickerStripThrough) {
     const ClearanceNeed need = clearance_need({0.2, 2.0}, {1.5, 0.0});
     EXPECT_GT(need.pass_mm, 0.75);
     EXPECT_GE(need.flat_mm, need.pass_mm);
-    EXPECT_EQ(automatic_clearance_mm(need, 1.0), need.pass_mm);
-    EXPECT_EQ(automatic_clearance_mm(need, 1000.0), need.flat_mm);
+    EXPECT_EQ(need.joint_mm, 1.5) << "two layers of 1.5 mm";
+    EXPECT_EQ(automatic_clearance_mm(need, 1.0), need.joint_mm);
+    EXPECT_EQ(automatic_clearance_mm(need, 1000.0), std::max(need.joint_mm, need.flat_mm));
+    const ClearanceNeed paper = clearance_need({0.2, 2.0}, {0.2, 2.0});
+    EXPECT_EQ(automatic_clearance_mm(paper, 1000.0), paper.flat_mm);
+    EXPECT_NEAR(automatic_clearance_mm(paper, 10.0), 0.5, 1e-12);
 }
 
 }  // namespace
