@@ -26,10 +26,25 @@ constexpr const char* kStyle =
     "background:#fff}svg path{vector-effect:non-scaling-stroke;stroke-width:1px}"
     "section{break-inside:avoid}@page{margin:15mm}@media print{body{margin:0;max-width:none}}";
 
-std::string drawing(const CutProgram& program) {
-    const std::string file = write_svg(program);
+// The sheet as it is cut; of a remnant, with its outline.
+std::string drawing(const CutProgram& program, const Sheet& sheet) {
+    std::string file = write_svg(program);
     const std::size_t start = file.find("<svg");
-    return start == std::string::npos ? std::string() : file.substr(start);
+    const std::size_t end = file.rfind("</svg>");
+    if (start == std::string::npos || end == std::string::npos) {
+        return {};
+    }
+    if (!sheet.outline.empty()) {
+        std::string points;
+        for (const Eigen::Vector2d& point : sheet.outline) {
+            points += fmt::format("{}{:.3f},{:.3f}", points.empty() ? "M" : " ", point.x(),
+                                  sheet.size.height_mm - point.y());
+        }
+        file.insert(end, fmt::format("<path fill=\"none\" stroke=\"#2a8a4a\" "
+                                     "stroke-dasharray=\"6 4\" d=\"{}Z\"/>\n",
+                                     points));
+    }
+    return file.substr(start);
 }
 
 std::map<std::string_view, const Piece*> index_of(const JobResult& job) {
@@ -81,11 +96,12 @@ std::string recut_html(const JobResult& job) {
         "<table><tr><th>Piece</th><th>Strip</th><th>Material</th><th class=n>Sheet</th>"
         "<th class=n>Size</th><th class=n>Area</th></tr>\n";
     out += rows(job) + "</table>\n";
-    for (const CutProgram& program : job.programs) {
+    for (std::size_t i = 0; i < job.programs.size(); ++i) {
+        const CutProgram& program = job.programs[i];
         out += fmt::format(
             "<section><h2>Sheet {}: {}, {:g} × {:g} mm, about {:.0f} s</h2>\n{}</section>\n",
             program.sheet, escaped(program.material), program.size.width_mm, program.size.height_mm,
-            program.estimated_s, drawing(program));
+            program.estimated_s, drawing(program, job.layout.sheets[i]));
     }
     return out + "</html>\n";
 }
