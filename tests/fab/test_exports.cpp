@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <cstdlib>
+#include <fstream>
 #include <iterator>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <sys/wait.h>
 #include <utility>
 #include <vector>
 
@@ -12,6 +15,7 @@
 #include "fab/cut/audit.h"
 #include "fab/export/formats.h"
 #include "geometry/error.h"
+#include "tests/support/temp_dir.h"
 
 namespace leafcutter::fab {
 namespace {
@@ -191,6 +195,33 @@ TEST(Dxf, HasALayerPerOperationAndClosedPolylines) {
     EXPECT_EQ(closed, 2);
     EXPECT_EQ(open, 2);
     EXPECT_EQ(vertices, 3 + 2 + 3 + 3);
+}
+
+// Another program's eyes: 77 means that it is not there.
+TEST(Dxf, IsReadWithoutComplaintByAnIndependentReader) {
+    const test::TempDir dir;
+    const std::string file = (dir.path() / "sheet.dxf").string();
+    std::ofstream(file, std::ios::binary) << write_dxf(sample_program());
+    const std::string script = (dir.path() / "read.py").string();
+    std::ofstream(script) << "import sys\n"
+                             "import ezdxf\n"
+                             "drawing = ezdxf.readfile(sys.argv[1])\n"
+                             "audit = drawing.audit()\n"
+                             "lines = list(drawing.modelspace())\n"
+                             "cuts = [line for line in lines if line.dxf.layer == 'CUT']\n"
+                             "ok = (not audit.errors and not audit.fixes and len(lines) == 4 and\n"
+                             "      len(cuts) == 2 and all(cut.is_closed for cut in cuts) and\n"
+                             "      drawing.header['$INSUNITS'] == 4)\n"
+                             "sys.exit(0 if ok else 1)\n";
+    const int status = std::system(
+        fmt::format("for p in python3 /usr/bin/python3; do $p -c 'import ezdxf' 2>/dev/null && "
+                    "exec $p '{}' '{}'; done; exit 77",
+                    script, file)
+            .c_str());
+    if (WEXITSTATUS(status) == 77) {
+        GTEST_SKIP() << "no python3 with ezdxf";
+    }
+    EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 }  // namespace
