@@ -124,8 +124,13 @@ public:
             problem.joint_cost[i] += std::min(places.threading[i], kMostThreadingCost);
         }
         problem.length.assign(steps_.begin(), steps_.begin() + total_);
-        problem.good = [this](int first, int count) {
-            return verdict(first, count) == Verdict::Good;
+        problem.good = [&](int first, int count) {
+            const bool winds = std::any_of(
+                places.windings.begin(), places.windings.end(), [&](int cell) {
+                    const int behind = (cell - first % total_ + total_) % total_;
+                    return behind > 0 && behind < count;
+                });
+            return !winds && verdict(first, count) == Verdict::Good;
         };
         return pieces_at(plan_parting(problem));
     }

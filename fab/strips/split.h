@@ -50,6 +50,7 @@ struct StripPlaces {
     const JointMap* joints = nullptr;        // Those made before; may be null.
     std::span<const double> threading = {};  // Per cell what a joint before it costs in threading
                                              // (opening_costs); may be empty.
+    std::span<const int> windings = {};      // Cells before which it has to be parted.
 };
 
 // Parts `strip` into the fewest pieces that are good, where the joints show least. `cells` are

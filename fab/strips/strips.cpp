@@ -203,18 +203,13 @@ std::vector<Strip> make_strips(const geometry::QuadMesh& mesh,
     std::vector<Strip> strips;
     add_strips(mesh, Family::Weft,
                geometry::trace_threads(mesh, Family::Weft, ThreadEnds::AtCriticalLeaves), strips);
-    std::vector<geometry::Thread> threads;
     if (columns == ColumnRuns::PerCylinder) {
-        for (geometry::Thread& thread :
-             geometry::trace_threads(mesh, Family::Warp, ThreadEnds::AtCriticalLeaves)) {
-            for (geometry::Thread& part : parted_windings(mesh, std::move(thread))) {
-                threads.push_back(std::move(part));
-            }
-        }
-        geometry::sort_by_smallest_quad(threads);
-        add_strips(mesh, Family::Warp, std::move(threads), strips);
+        add_strips(mesh, Family::Warp,
+                   geometry::trace_threads(mesh, Family::Warp, ThreadEnds::AtCriticalLeaves),
+                   strips);
         return strips;
     }
+    std::vector<geometry::Thread> threads;
     for (geometry::Thread& thread :
          geometry::trace_threads(mesh, Family::Warp, ThreadEnds::Through)) {
         for (geometry::Thread& part : parted_at_leaves(mesh, std::move(thread), limits)) {
@@ -278,8 +273,9 @@ std::vector<Piece> make_pieces(Strip& strip,
         const int count = static_cast<int>(strip.quads.size());
         options.extra_mm = crimp_of(unfold(mesh, cells, {0, count}), strip, rules);
     }
-    Parting parting =
-        part_strip(mesh, cells, strip, {rules.crossings, rules.joints, rules.threading}, options);
+    const std::vector<int> windings = winding_joints(mesh, strip);
+    Parting parting = part_strip(
+        mesh, cells, strip, {rules.crossings, rules.joints, rules.threading, windings}, options);
     tell_of(parting, strip, rules, warnings);
     std::vector<Piece> pieces;
     strip.pieces.clear();

@@ -39,9 +39,9 @@ struct PieceLimits {
 struct PieceRules {
     const FitParams& fit;
     const PieceLimits& limits;
-    std::span<const Crossing> crossings;  // Of the strip, per cell.
-    JointMap* joints = nullptr;           // If given, joints keep away from those in it, and are
-                                          // added to it.
+    std::span<const Crossing> crossings;     // Of the strip, per cell.
+    JointMap* joints = nullptr;              // If given, joints keep away from those in it, and are
+                                             // added to it.
     std::span<const double> threading = {};  // Of the strip: opening_costs; may be empty.
 };
 

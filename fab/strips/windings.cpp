@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdlib>
-#include <utility>
 
 namespace leafcutter::fab {
 
@@ -24,19 +23,18 @@ bool is_closing_line(const geometry::QuadMesh& mesh, int quad, int next) {
 
 }  // namespace
 
-std::vector<geometry::Thread> parted_windings(const geometry::QuadMesh& mesh,
-                                              geometry::Thread thread) {
-    std::vector<int> firsts;
-    const std::size_t count = thread.quads.size();
-    for (std::size_t i = 0; i < count && thread.closed; ++i) {
-        if (is_closing_line(mesh, thread.quads[(i + count - 1) % count], thread.quads[i])) {
-            firsts.push_back(static_cast<int>(i));
+std::vector<int> winding_joints(const geometry::QuadMesh& mesh, const Strip& strip) {
+    std::vector<int> joints;
+    const std::size_t count = strip.quads.size();
+    for (std::size_t i = 0; i < count && strip.closed && strip.family == Family::Warp; ++i) {
+        if (is_closing_line(mesh, strip.quads[(i + count - 1) % count], strip.quads[i])) {
+            joints.push_back(static_cast<int>(i));
         }
     }
-    if (firsts.size() < 2) {
-        firsts.clear();
+    if (joints.size() < 2) {
+        joints.clear();
     }
-    return geometry::parted(std::move(thread), firsts);
+    return joints;
 }
 
 }  // namespace leafcutter::fab

@@ -31,19 +31,9 @@ struct CutStrips {
 inline std::vector<fab::Strip> whole_strips(const geometry::QuadMesh& mesh, bool through) {
     std::vector<fab::Strip> strips;
     for (const fab::Family family : {fab::Family::Weft, fab::Family::Warp}) {
-        std::vector<geometry::Thread> threads;
-        for (auto& thread :
-             geometry::trace_threads(mesh, family,
-                                     through ? geometry::ThreadEnds::Through
-                                             : geometry::ThreadEnds::AtCriticalLeaves)) {
-            if (through) {
-                threads.push_back(std::move(thread));
-                continue;
-            }
-            for (auto& part : fab::parted_windings(mesh, std::move(thread))) {
-                threads.push_back(std::move(part));
-            }
-        }
+        const auto threads = geometry::trace_threads(
+            mesh, family,
+            through ? geometry::ThreadEnds::Through : geometry::ThreadEnds::AtCriticalLeaves);
         const char letter = family == fab::Family::Weft ? 'W' : 'P';
         for (std::size_t i = 0; i < threads.size(); ++i) {
             fab::Strip strip;
@@ -69,7 +59,10 @@ inline CutStrips cut_strips(const geometry::QuadMesh& mesh, const Cutting& cutti
     for (std::size_t i = 0; i < result.strips.size(); ++i) {
         fab::Strip& strip = result.strips[i];
         const int count = static_cast<int>(strip.quads.size());
-        const int first = strip.closed ? cutting.opening(static_cast<int>(i)) % count : 0;
+        const std::vector<int> windings = fab::winding_joints(mesh, strip);
+        const int first = !windings.empty() ? windings.front()
+                          : strip.closed    ? cutting.opening(static_cast<int>(i)) % count
+                                            : 0;
         for (int done = 0; done < count;) {
             fab::Piece piece;
             piece.id = fmt::format("{}.{}", strip.id, strip.pieces.size() + 1);
@@ -77,6 +70,11 @@ inline CutStrips cut_strips(const geometry::QuadMesh& mesh, const Cutting& cutti
             piece.family = strip.family;
             piece.first_cell = (first + done) % count;
             piece.cell_count = std::min(cutting.most_cells, count - done);
+            for (const int cell : windings) {
+                const int behind = (cell - piece.first_cell + count) % count;
+                piece.cell_count =
+                    behind > 0 ? std::min(piece.cell_count, behind) : piece.cell_count;
+            }
             for (int rung = 0; rung <= piece.cell_count; ++rung) {
                 piece.left.emplace_back(rung, 0.5);
                 piece.right.emplace_back(rung, -0.5);
