@@ -33,8 +33,8 @@ ul.ticks li { padding-left: 1.5rem; text-indent: -1.5rem; }
         border-radius: .12em; margin-right: .6em; vertical-align: -.06em; text-indent: 0; }
 .swatch { display: inline-block; width: .8em; height: .8em; border: 1px solid #777;
           margin-right: .4em; vertical-align: -.06em; }
-.tables { column-gap: 8mm; margin: 0 0 .9rem; } .tables table { margin: 0; }
-.tables td { white-space: nowrap; } td svg { max-width: none; display: block; }
+.tables { column-gap: 6mm; margin: 0 0 .9rem; } .tables table { margin: 0; }
+.tables th, .tables td { white-space: nowrap; padding-right: .4rem; } td svg { max-width: none; display: block; }
 table { border-collapse: collapse; width: 100%; margin: 0 0 .9rem; font-size: 13px;
         font-variant-numeric: tabular-nums; }
 th { text-align: left; font-weight: 700; border-bottom: 1.3px solid #222; }
@@ -55,6 +55,7 @@ nav ol { list-style: none; padding: 0; columns: 2; } nav a { color: inherit; }
   body { font-size: 10pt; max-width: none; padding: 0; }
   h1 { font-size: 22pt; } h2 { font-size: 16pt; margin-top: 0; } h3 { font-size: 12pt; }
   h4 { font-size: 10pt; } .lead { font-size: 12pt; } .note, figcaption, table { font-size: 8.5pt; }
+  .tables table { font-size: 8pt; } h3 { margin-top: 1.2rem; }
   h2 { break-before: page; } h2, h3, h4, th, p:has(+ figure) { break-after: avoid; }
   tr, li, figure, .step, svg { break-inside: avoid; } p { orphans: 2; widows: 2; }
 }

@@ -18,6 +18,16 @@ inline fab::Assembly simple_assembly(const geometry::QuadMesh& mesh,
     using fab::MoveKind;
     fab::Assembly assembly;
     std::set<int> placed;
+    const auto joint = [](int region, std::size_t strip, const std::string& piece,
+                          const std::string& onto) {
+        AssemblyMove move;
+        move.kind = MoveKind::Join;
+        move.region = region;
+        move.strip = static_cast<int>(strip);
+        move.piece = piece;
+        move.onto = onto;
+        return move;
+    };
     const auto tab_of = [&](const std::string& id) -> std::string {
         for (const fab::Piece& piece : pieces) {
             if (piece.id == id) {
@@ -31,7 +41,8 @@ inline fab::Assembly simple_assembly(const geometry::QuadMesh& mesh,
             continue;
         }
         const int region = static_cast<int>(assembly.regions.size());
-        assembly.regions.push_back({.cylinders = {static_cast<int>(cylinder)}});
+        assembly.regions.emplace_back();
+        assembly.regions.back().cylinders = {static_cast<int>(cylinder)};
         for (const fab::Family family : {fab::Family::Warp, fab::Family::Weft}) {
             for (std::size_t i = 0; i < strips.size(); ++i) {
                 const fab::Strip& strip = strips[i];
@@ -41,13 +52,12 @@ inline fab::Assembly simple_assembly(const geometry::QuadMesh& mesh,
                     continue;
                 }
                 for (std::size_t k = 0; k + 1 < strip.pieces.size(); ++k) {
-                    assembly.moves.push_back({.kind = MoveKind::Join,
-                                              .region = region,
-                                              .strip = static_cast<int>(i),
-                                              .piece = strip.pieces[k],
-                                              .onto = strip.pieces[k + 1]});
+                    assembly.moves.push_back(
+                        joint(region, i, strip.pieces[k], strip.pieces[k + 1]));
                 }
-                AssemblyMove lay{.kind = MoveKind::Lay, .region = region, .strip = static_cast<int>(i)};
+                AssemblyMove lay;
+                lay.region = region;
+                lay.strip = static_cast<int>(i);
                 lay.pieces = strip.pieces;
                 for (std::size_t cell = 0; family == fab::Family::Weft && cell < strip.quads.size();
                      ++cell) {
@@ -56,12 +66,10 @@ inline fab::Assembly simple_assembly(const geometry::QuadMesh& mesh,
                 assembly.moves.push_back(lay);
                 ++assembly.laid;
                 if (strip.closed && !strip.pieces.empty()) {
-                    assembly.moves.push_back({.kind = MoveKind::Close,
-                                              .region = region,
-                                              .strip = static_cast<int>(i),
-                                              .piece = strip.pieces.back(),
-                                              .onto = strip.pieces.front(),
-                                              .in_place = true});
+                    assembly.moves.push_back(
+                        joint(region, i, strip.pieces.back(), strip.pieces.front()));
+                    assembly.moves.back().kind = MoveKind::Close;
+                    assembly.moves.back().in_place = true;
                 }
             }
         }
@@ -72,12 +80,9 @@ inline fab::Assembly simple_assembly(const geometry::QuadMesh& mesh,
         }
         const std::string onto = tab_of(strips[i].pieces.back());
         if (!onto.empty()) {
-            assembly.moves.push_back({.kind = MoveKind::Join,
-                                      .region = static_cast<int>(assembly.regions.size()) - 1,
-                                      .strip = static_cast<int>(i),
-                                      .piece = strips[i].pieces.back(),
-                                      .onto = onto,
-                                      .in_place = true});
+            const int last = static_cast<int>(assembly.regions.size()) - 1;
+            assembly.moves.push_back(joint(last, i, strips[i].pieces.back(), onto));
+            assembly.moves.back().in_place = true;
         }
     }
     return assembly;
