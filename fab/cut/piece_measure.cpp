@@ -150,7 +150,10 @@ std::optional<Vector2d> meeting(const Tick& tick, const Ring& contour, const Vec
     return best;
 }
 
-Vector2d burnt_end(const RungEnd& end, const Ring& contour, const std::optional<Tick>& tick) {
+Vector2d burnt_end(const RungEnd& end,
+                   bool is_corner,
+                   const Ring& contour,
+                   const std::optional<Tick>& tick) {
     if (tick) {
         if (const auto point = meeting(*tick, contour, end.at)) {
             const Vector2d& corner = nearest_corner(contour, *point);
@@ -158,7 +161,8 @@ Vector2d burnt_end(const RungEnd& end, const Ring& contour, const std::optional<
         }
     }
     const Vector2d& corner = nearest_corner(contour, end.at);
-    return (corner - end.at).norm() <= kSameCornerMm ? corner : nearest_on(contour, end.at);
+    return is_corner && (corner - end.at).norm() <= kSameCornerMm ? corner
+                                                                  : nearest_on(contour, end.at);
 }
 
 struct Rungs {
@@ -191,11 +195,13 @@ Rungs burnt_rungs(const Piece& piece,
         const Vector2d reached = nearest_on(edges.planned, end.at);
         const Vector2d beyond = end.at - reached;
         if (beyond.norm() <= kReachedMm) {
-            return burnt_end(end, edges.burnt, tick);
+            const Vector2d& corner = nearest_corner(edges.planned, end.at);
+            const bool is_corner = (corner - end.at).norm() <= kReachedMm;
+            return burnt_end(end, is_corner, edges.burnt, tick);
         }
         ++measured.filled_notches;
         end.at = reached;
-        return burnt_end(end, edges.burnt, std::nullopt) + beyond;
+        return burnt_end(end, false, edges.burnt, std::nullopt) + beyond;
     };
     Rungs rungs;
     for (std::size_t i = 0; i < piece.cut_left.size(); ++i) {
