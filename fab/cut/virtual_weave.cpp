@@ -7,10 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
-
-#include "geometry/error.h"
+#include "geometry/sparse_solver.h"
 
 namespace leafcutter::fab {
 
@@ -18,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using Matrix = Eigen::SparseMatrix<double>;
+using Entries = std::vector<geometry::MatrixEntry>;
 
 constexpr int kMostSteps = 20;
 constexpr double kStillPart = 1e-9;  // Of the diagonal: steps smaller than this end it.
@@ -83,8 +80,8 @@ private:
     }
 
     // Normal equations of the linearised lengths: a 3 x 3 block for each vertex and each pair.
-    void assemble(double damping, Matrix& matrix, VectorXd& right) const {
-        std::vector<Eigen::Triplet<double>> entries;
+    Entries assemble(double damping, VectorXd& right) const {
+        Entries entries;
         entries.reserve(lengths_.size() * 24 + at_.size() * 3);
         const auto size = static_cast<Eigen::Index>(3 * at_.size());
         right = VectorXd::Zero(size);
@@ -104,46 +101,36 @@ private:
             const auto row = static_cast<int>(3 * i);
             right.segment<3>(row) -= spring_ * (at_[i] - plan_[i]);
             for (int k = 0; k < 3; ++k) {
-                entries.emplace_back(row + k, row + k, spring_ + damping);
+                entries.push_back({row + k, row + k, spring_ + damping});
             }
         }
-        matrix.resize(size, size);
-        matrix.setFromTriplets(entries.begin(), entries.end());
+        return entries;
     }
 
     // The lower triangle only.
     static void add_blocks(const std::array<int, 2>& pair,
                            const Eigen::Matrix3d& block,
-                           std::vector<Eigen::Triplet<double>>& entries) {
+                           Entries& entries) {
         for (const int vertex : pair) {
             for (int i = 0; i < 3; ++i) {
                 for (int j = 0; j <= i; ++j) {
-                    entries.emplace_back(3 * vertex + i, 3 * vertex + j, block(i, j));
+                    entries.push_back({3 * vertex + i, 3 * vertex + j, block(i, j)});
                 }
             }
         }
         const auto [low, high] = std::minmax(pair[0], pair[1]);
         for (int i = 0; i < 3; ++i) {
             for (int j = 0; j < 3; ++j) {
-                entries.emplace_back(3 * high + i, 3 * low + j, -block(i, j));
+                entries.push_back({3 * high + i, 3 * low + j, -block(i, j)});
             }
         }
     }
 
-    std::vector<Vector3d> stepped(double damping) {
-        Matrix matrix;
+    std::vector<Vector3d> stepped(double damping) const {
         VectorXd right;
-        assemble(damping, matrix, right);
-        if (!analysed_) {
-            solver_.analyzePattern(matrix);
-            analysed_ = true;
-        }
-        solver_.factorize(matrix);
-        if (solver_.info() != Eigen::Success) {
-            throw geometry::Error(geometry::ErrorKind::SelfCheck, "certificate-singular",
-                                  "certificate: the woven lengths could not be solved for");
-        }
-        const VectorXd step = solver_.solve(right);
+        const Entries entries = assemble(damping, right);
+        const VectorXd step =
+            geometry::SparseSolver(static_cast<int>(right.size()), entries).solve(right);
         std::vector<Vector3d> next = at_;
         for (std::size_t i = 0; i < next.size(); ++i) {
             next[i] += step.segment<3>(static_cast<Eigen::Index>(3 * i));
@@ -156,8 +143,6 @@ private:
     std::vector<Vector3d> at_;
     double diagonal_ = 0.0;
     double spring_ = 0.0;
-    Eigen::SimplicialLDLT<Matrix, Eigen::Lower> solver_;
-    bool analysed_ = false;
 };
 
 }  // namespace

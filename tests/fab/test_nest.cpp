@@ -294,7 +294,7 @@ TEST(NestProof, SeesTwoPiecesTooCloseAndOneInsideAnother) {
     small.outline = {{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}, {0.0, 10.0}};
     const std::vector<const Piece*> both{&large, &small};
     Layout layout;
-    layout.sheets.push_back({1, "paper", "both", kSheet, {{"large", 10.0, 10.0, 0.0, false}}});
+    layout.sheets.push_back({1, "paper", "both", kSheet, {}, {{"large", 10.0, 10.0, 0.0, false}}});
     std::vector<Placement>& placements = layout.sheets[0].placements;
 
     placements.push_back({"small", 111.0, 50.0, 0.0, false});
