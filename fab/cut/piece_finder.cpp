@@ -123,7 +123,10 @@ PieceFinder::PieceFinder(std::span<const Piece> pieces, std::array<double, 2> ke
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         by_id_.emplace(pieces[i].id, i);
         Ring burnt = as_burnt(pieces[i].outline, kerf_mm[index(pieces[i].family)]);
-        outlines_.push_back(burnt.size() < 3 ? pieces[i].outline : std::move(burnt));
+        if (burnt.size() < 3) {
+            burnt = pieces[i].outline;
+        }
+        outlines_.push_back(std::move(burnt));
         keys_.push_back(shape_key(outlines_.back()));
         by_area_.push_back(i);
     }

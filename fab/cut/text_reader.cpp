@@ -1,18 +1,14 @@
 #include "fab/cut/text_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <map>
 #include <numbers>
-#include <numeric>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "fab/cut/stroke_lines.h"
 #include "fab/strips/labels.h"
 
 namespace leafcutter::fab {
@@ -21,7 +17,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kTouchMm = 3e-3;      // Lines nearer than this touch.
 constexpr double kMissMm = 5e-3;       // An end of a line may be off by this much,
 constexpr double kMissHeights = 0.01;  // and by this part of the text's height.
 constexpr double kLeastHeightMm = 0.3;
@@ -29,17 +24,10 @@ constexpr double kLargestHeightMm = 100.0;
 constexpr std::size_t kLeastSeedLines = 3;  // Fewer could be anything.
 constexpr double kSimilarLength = 0.97;     // Of lines that may be taken for each other.
 
-struct Line {
-    Vector2d from;
-    Vector2d to;
-
-    double length() const { return (to - from).norm(); }
-};
-
 struct Template {
     char letter = ' ';
-    std::vector<Line> lines;  // Capitals 1 high, from the pen's position.
-    double advance = 0.0;     // To the next letter's.
+    std::vector<StrokeLine> lines;  // Capitals 1 high, from the pen's position.
+    double advance = 0.0;           // To the next letter's.
     double length = 0.0;
     double longest = 0.0;
 };
@@ -99,7 +87,7 @@ struct TextPose {
 };
 
 // The pose that takes `line` of the font to `burnt`.
-TextPose pose_of(const Line& line, const Line& burnt) {
+TextPose pose_of(const StrokeLine& line, const StrokeLine& burnt) {
     const Vector2d d = line.to - line.from;
     const Vector2d e = burnt.to - burnt.from;
     TextPose pose;
@@ -142,123 +130,6 @@ private:
     double dot_ = 0.0;
     double cross_ = 0.0;
 };
-
-// Finds burnt lines by where they lie.
-class LineIndex {
-public:
-    explicit LineIndex(const std::vector<Line>& lines) : lines_(lines) {
-        for (std::size_t i = 0; i < lines.size(); ++i) {
-            cells_[cell_of((lines[i].from + lines[i].to) / 2.0)].push_back(i);
-        }
-    }
-
-    struct Hit {
-        std::size_t line = 0;
-        bool turned = false;
-    };
-
-    // The line whose ends lie within `miss` of those of `wanted`.
-    std::optional<Hit> find(const Line& wanted, double miss) const {
-        const auto [x, y] = cell_of((wanted.from + wanted.to) / 2.0);
-        for (std::int64_t i = x - 1; i <= x + 1; ++i) {
-            for (std::int64_t j = y - 1; j <= y + 1; ++j) {
-                const auto cell = cells_.find({i, j});
-                if (cell == cells_.end()) {
-                    continue;
-                }
-                for (const std::size_t k : cell->second) {
-                    if (near(lines_[k].from, wanted.from, miss) &&
-                        near(lines_[k].to, wanted.to, miss)) {
-                        return Hit{k, false};
-                    }
-                    if (near(lines_[k].from, wanted.to, miss) &&
-                        near(lines_[k].to, wanted.from, miss)) {
-                        return Hit{k, true};
-                    }
-                }
-            }
-        }
-        return std::nullopt;
-    }
-
-private:
-    static constexpr double kCellMm = 1.0;  // More than any miss.
-    using Cell = std::pair<std::int64_t, std::int64_t>;
-    struct CellHash {
-        std::size_t operator()(const Cell& cell) const {
-            return static_cast<std::size_t>(cell.first * 73856093 ^ cell.second * 19349663);
-        }
-    };
-
-    static Cell cell_of(const Vector2d& point) {
-        return {std::llround(point.x() / kCellMm), std::llround(point.y() / kCellMm)};
-    }
-    static bool near(const Vector2d& a, const Vector2d& b, double miss) {
-        return (a - b).squaredNorm() <= miss * miss;
-    }
-
-    const std::vector<Line>& lines_;
-    std::unordered_map<Cell, std::vector<std::size_t>, CellHash> cells_;
-};
-
-double distance(const Vector2d& point, const Line& line) {
-    const Vector2d d = line.to - line.from;
-    const double t = std::clamp((point - line.from).dot(d) / d.squaredNorm(), 0.0, 1.0);
-    return (point - line.from - t * d).norm();
-}
-
-bool cross(const Line& a, const Line& b) {
-    const auto side = [](const Line& line, const Vector2d& point) {
-        const Vector2d d = line.to - line.from;
-        const Vector2d e = point - line.from;
-        return d.x() * e.y() - d.y() * e.x() > 0.0;
-    };
-    return side(a, b.from) != side(a, b.to) && side(b, a.from) != side(b, a.to);
-}
-
-bool touch(const Line& a, const Line& b) {
-    return std::min({distance(a.from, b), distance(a.to, b), distance(b.from, a),
-                     distance(b.to, a)}) <= kTouchMm ||
-           cross(a, b);
-}
-
-// Lines that touch each other, directly or over others; each list sorted, in order of their firsts.
-std::vector<std::vector<std::size_t>> connected(const std::vector<Line>& lines) {
-    const std::size_t count = lines.size();
-    std::vector<std::size_t> root(count);
-    std::iota(root.begin(), root.end(), std::size_t{0});
-    const auto find = [&](std::size_t i) {
-        while (root[i] != i) {
-            i = root[i] = root[root[i]];
-        }
-        return i;
-    };
-    std::vector<std::size_t> order = root;
-    const auto low = [&](std::size_t i) { return std::min(lines[i].from.x(), lines[i].to.x()); };
-    const auto high = [&](std::size_t i) { return std::max(lines[i].from.x(), lines[i].to.x()); };
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return std::pair(low(a), a) < std::pair(low(b), b);
-    });
-    for (std::size_t i = 0; i < count; ++i) {
-        const double reach = high(order[i]) + kTouchMm;
-        for (std::size_t j = i + 1; j < count && low(order[j]) <= reach; ++j) {
-            if (touch(lines[order[i]], lines[order[j]])) {
-                const std::size_t a = find(order[i]);
-                const std::size_t b = find(order[j]);
-                root[std::max(a, b)] = std::min(a, b);
-            }
-        }
-    }
-    std::map<std::size_t, std::vector<std::size_t>> groups;
-    for (std::size_t i = 0; i < count; ++i) {
-        groups[find(i)].push_back(i);
-    }
-    std::vector<std::vector<std::size_t>> result;
-    for (auto& [first, members] : groups) {
-        result.push_back(std::move(members));
-    }
-    return result;
-}
 
 // A text as it is being read.
 struct Candidate {
@@ -337,12 +208,12 @@ private:
                 longest = line;
             }
         }
-        const Line& burnt = lines_[longest];
+        const StrokeLine& burnt = lines_[longest];
         for (const Template& glyph : templates()) {
             if (glyph.lines.size() != group.size()) {
                 continue;
             }
-            for (const Line& line : glyph.lines) {
+            for (const StrokeLine& line : glyph.lines) {
                 if (line.length() < kSimilarLength * glyph.longest) {
                     continue;
                 }
@@ -377,9 +248,10 @@ private:
     // Adds the lines of `glyph` at the pen's position, if all are there.
     bool add_letter(const Template& glyph, const Pen& pen, Candidate& candidate) const {
         std::vector<LineIndex::Hit> hits;
-        for (const Line& line : glyph.lines) {
+        for (const StrokeLine& line : glyph.lines) {
             const Vector2d shift(pen.x, 0.0);
-            const Line wanted{pen.pose.apply(line.from + shift), pen.pose.apply(line.to + shift)};
+            const StrokeLine wanted{pen.pose.apply(line.from + shift),
+                                    pen.pose.apply(line.to + shift)};
             const auto hit = index_->find(wanted, pen.pose.miss());
             if (!hit || std::find(candidate.lines.begin(), candidate.lines.end(), hit->line) !=
                             candidate.lines.end()) {
@@ -388,7 +260,7 @@ private:
             hits.push_back(*hit);
         }
         for (std::size_t i = 0; i < hits.size(); ++i) {
-            const Line& burnt = lines_[hits[i].line];
+            const StrokeLine& burnt = lines_[hits[i].line];
             const Vector2d shift(pen.x, 0.0);
             candidate.fit.add(glyph.lines[i].from + shift, hits[i].turned ? burnt.to : burnt.from);
             candidate.fit.add(glyph.lines[i].to + shift, hits[i].turned ? burnt.from : burnt.to);
@@ -429,7 +301,7 @@ private:
     }
 
     std::span<const BurntSegment> burnt_;
-    std::vector<Line> lines_;
+    std::vector<StrokeLine> lines_;
     std::optional<LineIndex> index_;
     std::vector<char> used_;
 };

@@ -93,8 +93,8 @@ private:
             }
             const Vector3d direction = d / now;
             const Vector3d pull = (now - length.mm) * direction;
-            right.segment<3>(3 * length.from) -= pull;
-            right.segment<3>(3 * length.to) += pull;
+            right.segment<3>(Eigen::Index{3} * length.from) -= pull;
+            right.segment<3>(Eigen::Index{3} * length.to) += pull;
             add_blocks({length.from, length.to}, direction * direction.transpose(), entries);
         }
         for (std::size_t i = 0; i < at_.size(); ++i) {
