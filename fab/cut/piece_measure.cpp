@@ -68,13 +68,15 @@ double distance_to(const Tick& tick, const Vector2d& point) {
 // How far the tick's line passes the rung end by, measured across the rung; none if it is no tick
 // of it.
 std::optional<double> aside(const Tick& tick, const RungEnd& end) {
-    const Vector2d direction = (tick.to - tick.from).stableNormalized();
-    if (std::abs(turn_of(direction, end.along)) > kTickSine ||
+    const Vector2d way = tick.to - tick.from;
+    const double length = way.norm();
+    // The cheap tests first: most lines are ticks of other rungs.
+    const double offset = std::abs(turn_of(way, end.at - tick.from)) / length;
+    if (offset > end.aside_mm || std::abs(turn_of(way, end.along)) > kTickSine * length ||
         distance_to(tick, end.at) > kTickReachMm) {
         return std::nullopt;
     }
-    const double offset = std::abs(turn_of(direction, end.at - tick.from));
-    return offset <= end.aside_mm ? std::optional(offset) : std::nullopt;
+    return offset;
 }
 
 std::optional<Tick> tick_of(const RungEnd& end, const std::vector<Tick>& lines) {

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 using Entries = std::vector<geometry::MatrixEntry>;
 
 constexpr int kMostSteps = 20;
-constexpr double kStillPart = 1e-9;  // Of the diagonal: steps smaller than this end it.
+constexpr double kStillPart = 1e-7;  // Of the diagonal: steps smaller than this end it.
 constexpr double kShortMm = 1e-9;    // Vertices that fall together have no direction.
 
 std::size_t index(int value) {
