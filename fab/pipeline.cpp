@@ -297,12 +297,26 @@ private:
         return limits;
     }
 
+    // Strips that run through critical leaves are longer than the leaves of a cylinder.
+    void relate_quality_to_strips(const Context& context) {
+        std::vector<geometry::Thread> threads;
+        for (const Strip& strip : result_.strips) {
+            threads.push_back({strip.family, strip.closed, strip.quads, -1, {}});
+        }
+        const geometry::TriangleMesh surface = geometry::to_triangle_mesh(mesh_);
+        result_.quality = geometry::measure_quality(result_.quads, geometry::ClosestPoint(surface),
+                                                    context, threads);
+    }
+
     void make_strips_and_pieces(const Context& context) {
         result_.params.fit.clearance_mm = clearance_of(result_);
         const FitParams fit = fit_of();
         const std::array limits = {limits_of(result_.weft), limits_of(result_.warp)};
         result_.strips =
             make_strips(result_.quads, fit.columns, through_limits(fit, limits.back()));
+        if (fit.columns == ColumnRuns::Through) {
+            relate_quality_to_strips(context);
+        }
         refuse_hopeless_strips(result_.strips, result_.quads, limits);
         if (result_.params.grid.junctions == geometry::Junctions::Independent) {
             glue_ends(result_.quads, result_.foliation, result_.strips);

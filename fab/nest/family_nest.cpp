@@ -50,14 +50,26 @@ double area(const SheetSize& size) {
     return size.width_mm * size.height_mm;
 }
 
-// Those that margins leave something of.
+// Those that margins leave something of: one at least, else Error(BadOption).
 std::vector<SheetSize> usable_sizes(const Material& material, const NestingParams& params) {
+    if (material.sheets.empty()) {
+        throw geometry::Error(geometry::ErrorKind::BadOption, "no-sheet",
+                              fmt::format("material {}: has no sheets", material.id));
+    }
     std::vector<SheetSize> sizes;
     const double edge = edges(material, params);
     for (const StockSheet& sheet : material.sheets) {
         if (sheet.size.width_mm > edge && sheet.size.height_mm > edge) {
             sizes.push_back(sheet.size);
         }
+    }
+    if (sizes.empty()) {
+        const SheetSize& sheet = material.sheets.front().size;
+        throw geometry::Error(
+            geometry::ErrorKind::BadOption, "sheet-too-small",
+            fmt::format(
+                "nesting.margin_mm: a sheet of {:g} x {:g} mm is no larger than its margins",
+                sheet.width_mm, sheet.height_mm));
     }
     return sizes;
 }
@@ -144,19 +156,7 @@ void append(Layout& whole, Layout part, const Batch& batch) {
 }  // namespace
 
 PieceRoom piece_room(const Material& material, const NestingParams& params) {
-    if (material.sheets.empty()) {
-        throw geometry::Error(geometry::ErrorKind::BadOption, "no-sheet",
-                              fmt::format("material {}: has no sheets", material.id));
-    }
     const std::vector<SheetSize> sizes = usable_sizes(material, params);
-    if (sizes.empty()) {
-        const SheetSize& sheet = material.sheets.front().size;
-        throw geometry::Error(
-            geometry::ErrorKind::BadOption, "sheet-too-small",
-            fmt::format(
-                "nesting.margin_mm: a sheet of {:g} x {:g} mm is no larger than its margins",
-                sheet.width_mm, sheet.height_mm));
-    }
     const double edge = edges(material, params);
     const SheetSize& sheet =
         *std::max_element(sizes.begin(), sizes.end(),

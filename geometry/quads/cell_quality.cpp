@@ -99,14 +99,16 @@ CellQuality measure_cell(const BilinearPatch& quad, double region, const Closest
     return cell;
 }
 
-// Adds to each quad half the length of the leaf of `family` through it, so that both families
+// Adds to each quad half the length of the leaf through it, so that both families
 // together give the mean.
-void add_half_leaf_lengths(const QuadMesh& mesh, Family family, std::vector<double>& lengths) {
-    for (const Thread& thread : trace_threads(mesh, family, ThreadEnds::AtCriticalLeaves)) {
+void add_half_leaf_lengths(const QuadMesh& mesh,
+                           std::span<const Thread> leaves,
+                           std::vector<double>& lengths) {
+    for (const Thread& thread : leaves) {
         double length = 0.0;
         for (const int quad : thread.quads) {
             const BilinearPatch shape = patch_of(mesh, static_cast<std::size_t>(quad));
-            length += family == Family::Weft ? shape.weft_length() : shape.warp_length();
+            length += thread.family == Family::Weft ? shape.weft_length() : shape.warp_length();
         }
         for (const int quad : thread.quads) {
             lengths[static_cast<std::size_t>(quad)] += 0.5 * length;
@@ -118,14 +120,21 @@ void add_half_leaf_lengths(const QuadMesh& mesh, Family family, std::vector<doub
 
 std::vector<CellQuality> measure_cells(const QuadMesh& mesh,
                                        const ClosestPoint& surface,
+                                       std::span<const Thread> leaves,
                                        const Context& context) {
     std::vector<CellQuality> cells(mesh.quads.size());
     for_each_index(mesh.quads.size(), context, [&](std::size_t i) {
         cells[i] = measure_cell(patch_of(mesh, i), mesh.surface_area[i], surface);
     });
     std::vector<double> leaf_lengths(mesh.quads.size(), 0.0);
-    add_half_leaf_lengths(mesh, Family::Weft, leaf_lengths);
-    add_half_leaf_lengths(mesh, Family::Warp, leaf_lengths);
+    if (leaves.empty()) {
+        for (const Family family : {Family::Weft, Family::Warp}) {
+            add_half_leaf_lengths(mesh, trace_threads(mesh, family, ThreadEnds::AtCriticalLeaves),
+                                  leaf_lengths);
+        }
+    } else {
+        add_half_leaf_lengths(mesh, leaves, leaf_lengths);
+    }
     for (std::size_t i = 0; i < cells.size(); ++i) {
         cells[i].distance_percent = 100.0 * cells[i].distance / std::max(leaf_lengths[i], 1e-300);
     }

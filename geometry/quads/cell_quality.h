@@ -3,11 +3,13 @@
 
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "geometry/closest_point.h"
 #include "geometry/context.h"
 #include "geometry/quads/quad_mesh.h"
+#include "geometry/quads/threads.h"
 
 namespace leafcutter::geometry {
 
@@ -27,9 +29,10 @@ struct CellQuality {
     double shear_deg = 0.0;             // Angle between its middle lines − 90.
 };
 
-// One for each quad. The same on any number of threads.
+// One for each quad; `leaves` as of measure_quality(). The same on any number of threads.
 std::vector<CellQuality> measure_cells(const QuadMesh& mesh,
                                        const ClosestPoint& surface,
+                                       std::span<const Thread> leaves,
                                        const Context& context = {});
 
 }  // namespace leafcutter::geometry

@@ -138,7 +138,8 @@ double removed_area(std::span<const CellQuality> cells) {
 
 QualityReport measure_quality(const QuadMesh& mesh,
                               const ClosestPoint& surface,
-                              const Context& context) {
+                              const Context& context,
+                              std::span<const Thread> leaves) {
     std::vector<std::vector<std::size_t>> of_cylinder(mesh.grids.size());
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
@@ -146,7 +147,7 @@ QualityReport measure_quality(const QuadMesh& mesh,
         all.push_back(i);
     }
     QualityReport report;
-    report.cells = measure_cells(mesh, surface, context);
+    report.cells = measure_cells(mesh, surface, leaves, context);
     report.vertices = measure_vertices(mesh, all);
     const double diagonal = surface.diagonal();
     report.overall = summarise(report.cells, all, report.vertices, diagonal);

@@ -8,6 +8,7 @@
 
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "geometry/closest_point.h"
@@ -55,8 +56,11 @@ struct QualityReport {
     std::vector<VertexQuality> vertices;  // Per vertex, of all quads.
 };
 
+// Distances are related to the lengths of `leaves`, of both families, each quad in one of either;
+// without them to leaves that end at critical leaves.
 QualityReport measure_quality(const QuadMesh& mesh,
                               const ClosestPoint& surface,
-                              const Context& context = {});
+                              const Context& context = {},
+                              std::span<const Thread> leaves = {});
 
 }  // namespace leafcutter::geometry
