@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "fab/strips/fit.h"
+#include "fab/strips/notches.h"
 #include "fab/strips/split.h"
 #include "fab/strips/unfold.h"
 #include "fab/strips/windings.h"
@@ -70,7 +71,7 @@ void add_strips(const geometry::QuadMesh& mesh,
     link_strips(next_quads, {strips.begin() + static_cast<std::ptrdiff_t>(first), strips.end()});
 }
 
-Piece to_piece(const Strip& strip, CutPiece& cut, std::string id) {
+Piece to_piece(const Strip& strip, CutPiece& cut, double kerf_mm, std::string id) {
     Piece piece;
     piece.id = std::move(id);
     piece.strip = strip.id;
@@ -92,7 +93,7 @@ Piece to_piece(const Strip& strip, CutPiece& cut, std::string id) {
         piece.end_tab.slit_at_mm = cut.fitted.arrow->slit_at_mm;
         piece.end_tab.slit_width_mm = cut.fitted.arrow->slit_width_mm;
     }
-    piece.outline = std::move(cut.fitted.outline);
+    piece.outline = without_notches(cut.fitted.outline, kerf_mm);
     piece.cut_left = std::move(cut.fitted.left);
     piece.cut_right = std::move(cut.fitted.right);
     return piece;
@@ -285,7 +286,7 @@ std::vector<Piece> make_pieces(Strip& strip,
             rules.joints->add(strip, cells, cut.run.first);
         }
         strip.pieces.push_back(fmt::format("{}.{}", strip.id, pieces.size() + 1));
-        pieces.push_back(to_piece(strip, cut, strip.pieces.back()));
+        pieces.push_back(to_piece(strip, cut, rules.limits.kerf_mm, strip.pieces.back()));
     }
     return pieces;
 }

@@ -5,6 +5,7 @@
 
 #include "fab/strips/labels.h"
 #include "fab/strips/marks.h"
+#include "fab/strips/notches.h"
 #include "fab/strips/overlap.h"
 #include "fab/strips/sheet_fit.h"
 #include "fab/strips/strips.h"
@@ -250,6 +251,20 @@ TEST(FitsSheet, TriesTheAllowedRotationsOnly) {
     }
     EXPECT_FALSE(fits_sheet(slanted, {120.0, 20.0}, Rotation::Quarter));
     EXPECT_TRUE(fits_sheet(slanted, {120.0, 20.0}, Rotation::Free));
+}
+
+TEST(Notches, ThatABeamCannotCutAreFilledAndNothingElseMoves) {
+    const Ring plain{{0, 0}, {20, 0}, {20, 5}, {12, 5}, {12, 4}, {8, 4}, {8, 5}, {0, 5}};
+    EXPECT_EQ(without_notches(plain, 0.1), plain);
+    // A slit of 0.06 mm, 2 mm deep, and a wide one.
+    const Ring slit{{0, 0},  {20, 0},   {20, 5},   {15, 5}, {15, 3}, {13, 3},
+                    {13, 5}, {5.06, 5}, {5.03, 3}, {5, 5},  {0, 5}};
+    const Ring filled = without_notches(slit, 0.1);
+    EXPECT_TRUE(is_simple(filled));
+    EXPECT_NEAR(area(filled), 20.0 * 5.0 - 4.0, 0.01);
+    EXPECT_GT(area(filled), area(slit) + 0.03);
+    EXPECT_NE(std::find(filled.begin(), filled.end(), Vector2d(13, 3)), filled.end());
+    EXPECT_EQ(without_notches(slit, 0.0), slit);
 }
 
 }  // namespace
