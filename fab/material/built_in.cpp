@@ -4,10 +4,10 @@
 // Thickness of papers is weight times a bulk of 1.25 cm³/g, usual for uncoated ones. The tightest
 // bend is the one at which the outer face is strained as far as the material bears: paper and felt
 // some percent without harm, wood about 1 % (thickness / 2 / 0.01), polypropylene far more.
-// Settings are where to start from; a test cut on the machine at hand decides. They come from the
-// energy that a cut takes for each millimetre of its length, as makers of machines publish it:
-// about 1 J for each millimetre of wood's thickness, 0.15 J for paper of 160 g/m², 0.3 J for 1 mm
-// of felt. Prices are of the order of what a shop takes for single sheets.
+// Settings are estimates to start from, no test cuts: a test cut on the machine at hand decides.
+// They are scaled from the energy that a cut takes for each millimetre of its length: about 1 J
+// for each millimetre of wood's thickness, 0.15 J for paper of 160 g/m², 0.3 J for 1 mm of felt.
+// Prices are of the order of what a shop takes for single sheets.
 
 #include <array>
 #include <vector>

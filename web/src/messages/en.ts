@@ -236,6 +236,7 @@ export const en = {
     title: 'Files',
     package: 'Download package',
     all: 'Everything (zip)',
+    pages: 'Pages for scissors',
     about: {
       'guide.html': 'Assembly guide',
       'guide.pdf': 'Assembly guide, to print',

@@ -14,3 +14,9 @@ test('the files of a sheet share a row, in the order of the sheets', () => {
 test('a file that only looks like a sheet stands by itself', () => {
   assert.equal(fileRows([file('sheets/readme.txt')])[0]?.sheet, null);
 });
+
+test('the pages for scissors share a row before the sheets', () => {
+  const rows = fileRows(['sheets/sheet-001.svg', 'scissors/page-001.svg', 'scissors/page-002.svg', 'strips.svg'].map(file));
+  assert.deepEqual(rows.map((row) => row.files.length), [1, 2, 1]);
+  assert.equal(rows[1]?.pages, true);
+});

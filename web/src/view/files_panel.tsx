@@ -34,6 +34,20 @@ function Row(props: { readonly job: string; readonly row: FileRow }) {
       </li>
     );
   }
+  if (row.pages === true) {
+    return (
+      <li>
+        <span>{t.files.pages}</span>
+        <span class="file-kinds">
+          {row.files.map((file, index) => (
+            <FileLink key={file.path} job={job} file={file}>
+              {`${index + 1}`}
+            </FileLink>
+          ))}
+        </span>
+      </li>
+    );
+  }
   if (first === undefined) return null;
   return (
     <li>
