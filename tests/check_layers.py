@@ -21,7 +21,7 @@ PINNED = {
     r"spdlog/.*": [r"server/.*", r"drivers/.*"],
     r"toml\+\+/.*|toml\.hpp": [r"server/config\.cpp"],
     r"cholmod\.h|Eigen/(CholmodSupport|SparseCholesky)": [r"geometry/sparse_solver\.cpp"],
-    r"polyclipping/.*": [r"fab/.*\.cpp"],
+    r"polyclipping/.*": [r"fab/.*\.cpp", r"fab/clipper_paths\.h"],
     r"hpdf\.h": [r"fab/guide/pdf\.cpp"],
     r"OpenMesh/.*": [r"geometry/mesh\.h"],
     r"termios\.h|asm/termbits\.h|sys/ioctl\.h|pty\.h": [r"drivers/.*", r"server/cli/.*"],

@@ -7,8 +7,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <polyclipping/clipper.hpp>
 
+#include "fab/clipper_paths.h"
 #include "fab/nest/shape.h"
 
 namespace leafcutter::fab {
@@ -180,18 +180,8 @@ RigidMotion refined(const Ring& contour, const Ring& planned, RigidMotion motion
 
 // The largest ring of what comes out, counter-clockwise.
 Ring offset_ring(const Ring& ring, double by_mm) {
-    ClipperLib::Path path;
-    for (const Vector2d& point : ring) {
-        path.emplace_back(std::llround(point.x() * kUnitsPerMm),
-                          std::llround(point.y() * kUnitsPerMm));
-    }
-    if (!ClipperLib::Orientation(path)) {
-        ClipperLib::ReversePath(path);
-    }
-    ClipperLib::ClipperOffset offset;
-    offset.AddPath(path, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
-    ClipperLib::Paths moved_paths;
-    offset.Execute(moved_paths, by_mm * kUnitsPerMm);
+    const ClipperLib::Paths moved_paths =
+        mitred_offset({upright_path(ring, kUnitsPerMm)}, by_mm * kUnitsPerMm);
     Ring result;
     double largest = 0.0;
     for (const ClipperLib::Path& contour : moved_paths) {
@@ -200,11 +190,7 @@ Ring offset_ring(const Ring& ring, double by_mm) {
             continue;
         }
         largest = area;
-        result.clear();
-        for (const ClipperLib::IntPoint& point : contour) {
-            result.emplace_back(static_cast<double>(point.X) / kUnitsPerMm,
-                                static_cast<double>(point.Y) / kUnitsPerMm);
-        }
+        result = ring_of(contour, kUnitsPerMm);
     }
     if (!result.empty() && signed_area(result) < 0.0) {
         std::reverse(result.begin(), result.end());

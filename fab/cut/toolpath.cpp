@@ -10,8 +10,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <polyclipping/clipper.hpp>
 
+#include "fab/clipper_paths.h"
 #include "fab/cut/cut_order.h"
 #include "fab/cut/estimate.h"
 #include "fab/nest/shape.h"
@@ -24,27 +24,6 @@ namespace {
 
 constexpr double kUnitsPerMm = 1e6;  // The offset is computed in whole nanometres.
 
-ClipperLib::Path to_units(const Ring& ring) {
-    ClipperLib::Path path;
-    path.reserve(ring.size());
-    for (const Eigen::Vector2d& point : ring) {
-        path.emplace_back(std::llround(point.x() * kUnitsPerMm),
-                          std::llround(point.y() * kUnitsPerMm));
-    }
-    return path;
-}
-
-Polyline closed_path(const ClipperLib::Path& path) {
-    Polyline points;
-    points.reserve(path.size() + 1);
-    for (const ClipperLib::IntPoint& point : path) {
-        points.emplace_back(static_cast<double>(point.X) / kUnitsPerMm,
-                            static_cast<double>(point.Y) / kUnitsPerMm);
-    }
-    points.push_back(points.front());
-    return points;
-}
-
 // The paths of the beam's centre that leave `outline` whole. A gap narrower than the kerf closes
 // and leaves a hole with a path of its own.
 std::vector<Polyline> kerf_paths(Ring outline, double kerf_mm) {
@@ -55,15 +34,12 @@ std::vector<Polyline> kerf_paths(Ring outline, double kerf_mm) {
         outline.push_back(outline.front());
         return {outline};
     }
-    // Corners sharper than 60 degrees are cut off square at half the kerf instead of running out.
-    constexpr double kMitreLimit = 2.0;
-    ClipperLib::ClipperOffset offset(kMitreLimit);
-    offset.AddPath(to_units(outline), ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
-    ClipperLib::Paths grown;
-    offset.Execute(grown, kerf_mm / 2.0 * kUnitsPerMm);
+    const ClipperLib::Paths grown =
+        mitred_offset({clipper_path(outline, kUnitsPerMm)}, kerf_mm / 2.0 * kUnitsPerMm);
     std::vector<Polyline> paths;
     for (const ClipperLib::Path& path : grown) {
-        paths.push_back(closed_path(path));
+        paths.push_back(ring_of(path, kUnitsPerMm));
+        paths.back().push_back(paths.back().front());
     }
     return paths;
 }

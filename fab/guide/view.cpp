@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include <Eigen/Geometry>
-#include <polyclipping/clipper.hpp>
 
+#include "fab/clipper_paths.h"
 #include "fab/guide/depth_image.h"
 
 namespace leafcutter::fab::guide {
@@ -120,28 +120,11 @@ private:
         return std::clamp(normal.dot(towards), 0.0, 1.0);
     }
 
-    ClipperLib::Path clip_path(const Points& ring) const {
-        ClipperLib::Path path;
-        for (const Point& point : ring) {
-            path.emplace_back(std::llround(point.x() * steps_), std::llround(point.y() * steps_));
-        }
-        return path;
-    }
-
-    Points points_of(const ClipperLib::Path& path) const {
-        Points ring;
-        for (const ClipperLib::IntPoint& point : path) {
-            ring.emplace_back(static_cast<double>(point.X) / steps_,
-                              static_cast<double>(point.Y) / steps_);
-        }
-        return ring;
-    }
-
     std::vector<Points> without(int quad, const std::vector<int>& hiding) const {
         ClipperLib::Clipper clipper;
-        clipper.AddPath(clip_path(corners_of(quad)), ClipperLib::ptSubject, true);
+        clipper.AddPath(clipper_path(corners_of(quad), steps_), ClipperLib::ptSubject, true);
         for (const int other : hiding) {
-            clipper.AddPath(clip_path(corners_of(other)), ClipperLib::ptClip, true);
+            clipper.AddPath(clipper_path(corners_of(other), steps_), ClipperLib::ptClip, true);
         }
         ClipperLib::Paths rest;
         clipper.Execute(ClipperLib::ctDifference, rest, ClipperLib::pftNonZero,
@@ -150,7 +133,7 @@ private:
         std::vector<Points> areas;
         for (const ClipperLib::Path& path : rest) {
             if (std::abs(ClipperLib::Area(path)) > least) {
-                areas.push_back(points_of(path));
+                areas.push_back(ring_of(path, steps_));
             }
         }
         return areas;
@@ -158,29 +141,19 @@ private:
 
     void add_outline() {
         ClipperLib::Clipper clipper;
-        ClipperLib::ClipperOffset offset;
-        ClipperLib::Paths grown;
         for (const SeenQuad& seen : view_.quads) {
             for (const Points& area : seen.areas) {
-                ClipperLib::Path path = clip_path(area);
-                if (!ClipperLib::Orientation(path)) {
-                    ClipperLib::ReversePath(path);
-                }
-                clipper.AddPath(path, ClipperLib::ptSubject, true);
+                clipper.AddPath(upright_path(area, steps_), ClipperLib::ptSubject, true);
             }
         }
         ClipperLib::Paths whole;
         clipper.Execute(ClipperLib::ctUnion, whole, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
         // Slits as narrow as a pixel, where hidden parts were cut away, are closed.
         const double pixel = image_.pixel_size() * steps_;
-        offset.AddPaths(whole, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
-        offset.Execute(grown, 1.5 * pixel);
-        offset.Clear();
-        offset.AddPaths(grown, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
-        offset.Execute(whole, -1.5 * pixel);
-        for (const ClipperLib::Path& path : whole) {
+        const ClipperLib::Paths grown = mitred_offset(whole, 1.5 * pixel);
+        for (const ClipperLib::Path& path : mitred_offset(grown, -1.5 * pixel)) {
             if (std::abs(ClipperLib::Area(path)) > 20.0 * pixel * pixel) {
-                view_.outline.push_back(points_of(path));
+                view_.outline.push_back(ring_of(path, steps_));
             }
         }
     }

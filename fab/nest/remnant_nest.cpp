@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <polyclipping/clipper.hpp>
 
+#include "fab/clipper_paths.h"
 #include "fab/material/totals.h"
 #include "fab/nest/exact.h"
 #include "fab/nest/family_nest.h"
@@ -37,25 +37,11 @@ Ring at_origin(const Ring& outline) {
 
 // What is left of a ring `by` from its edge inwards; by < 0: outwards. Counter-clockwise rings.
 std::vector<Ring> inset(const Ring& ring, double by) {
-    ClipperLib::Path path;
-    for (const Eigen::Vector2d& point : ring) {
-        path.emplace_back(std::llround(point.x() * kUnitsPerMm),
-                          std::llround(point.y() * kUnitsPerMm));
-    }
-    if (!ClipperLib::Orientation(path)) {
-        std::reverse(path.begin(), path.end());
-    }
-    ClipperLib::ClipperOffset offset;
-    offset.AddPath(path, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
-    ClipperLib::Paths left;
-    offset.Execute(left, -by * kUnitsPerMm);
+    const ClipperLib::Paths left =
+        mitred_offset({upright_path(ring, kUnitsPerMm)}, -by * kUnitsPerMm);
     std::vector<Ring> rings;
     for (const ClipperLib::Path& part : left) {
-        Ring out;
-        for (const ClipperLib::IntPoint& point : part) {
-            out.emplace_back(static_cast<double>(point.X) / kUnitsPerMm,
-                             static_cast<double>(point.Y) / kUnitsPerMm);
-        }
+        Ring out = ring_of(part, kUnitsPerMm);
         if (ring_fault(out).empty()) {
             rings.push_back(std::move(out));
         }

@@ -1,9 +1,8 @@
 #include "fab/strips/notches.h"
 
-#include <cmath>
+#include <utility>
 
-#include <polyclipping/clipper.hpp>
-
+#include "fab/clipper_paths.h"
 #include "fab/strips/overlap.h"
 
 namespace leafcutter::fab {
@@ -15,38 +14,11 @@ using ClipperLib::Paths;
 
 constexpr double kLeastNotchMm2 = 0.01;
 
-Path to_grid(const Ring& ring) {
-    Path path;
-    path.reserve(ring.size());
-    for (const Eigen::Vector2d& point : ring) {
-        path.emplace_back(std::llround(point.x() * kGridPerMm),
-                          std::llround(point.y() * kGridPerMm));
-    }
-    return path;
-}
-
-Ring from_grid(const Path& path) {
-    Ring ring;
-    ring.reserve(path.size());
-    for (const ClipperLib::IntPoint& point : path) {
-        ring.emplace_back(static_cast<double>(point.X) / kGridPerMm,
-                          static_cast<double>(point.Y) / kGridPerMm);
-    }
-    return ring;
-}
-
-// With mitres, as the beam's way is found from an outline.
-Paths offset(const Paths& paths, double by_mm) {
-    ClipperLib::ClipperOffset offset;
-    offset.AddPaths(paths, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
-    Paths moved;
-    offset.Execute(moved, by_mm * kGridPerMm);
-    return moved;
-}
-
 // What growing and shrinking again adds to the shape, where that is worth mentioning.
 Paths notches_of(const Path& outline, double width_mm) {
-    const Paths closed = offset(offset({outline}, width_mm / 2.0), -width_mm / 2.0);
+    // With mitres, as the beam's way is found from an outline.
+    const double half = width_mm / 2.0 * kGridPerMm;
+    const Paths closed = mitred_offset(mitred_offset({outline}, half), -half);
     ClipperLib::Clipper clipper;
     clipper.AddPaths(closed, ClipperLib::ptSubject, true);
     clipper.AddPath(outline, ClipperLib::ptClip, true);
@@ -68,7 +40,7 @@ Ring without_notches(const Ring& outline, double width_mm) {
     if (outline.size() < 4 || width_mm <= 0.0) {
         return outline;
     }
-    const Path path = to_grid(outline);
+    const Path path = clipper_path(outline, kGridPerMm);
     const Paths notches = notches_of(path, width_mm);
     if (notches.empty()) {
         return outline;
@@ -81,7 +53,7 @@ Ring without_notches(const Ring& outline, double width_mm) {
     if (filled.size() != 1) {
         return outline;
     }
-    const Ring ring = from_grid(filled.front());
+    const Ring ring = ring_of(filled.front(), kGridPerMm);
     return is_simple(ring) ? ring : outline;
 }
 

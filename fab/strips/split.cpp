@@ -4,8 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include <polyclipping/clipper.hpp>
-
+#include "fab/clipper_paths.h"
 #include "fab/strips/overlap.h"
 #include "fab/strips/parting_plan.h"
 #include "fab/strips/sheet_fit.h"
@@ -32,25 +31,16 @@ Vector2d middle(const Unfolded& flat, std::size_t rung) {
 
 // The largest contour of `ring` grown a little: for a cell too thin to be an outline of its own.
 Ring thickened(const Ring& ring, double by_mm) {
-    ClipperLib::Path path;
-    for (const Vector2d& point : ring) {
-        path.emplace_back(std::llround(point.x() * kGridPerMm),
-                          std::llround(point.y() * kGridPerMm));
-    }
     ClipperLib::ClipperOffset offset;
-    offset.AddPath(path, ClipperLib::jtMiter, ClipperLib::etClosedLine);
+    offset.AddPath(clipper_path(ring, kGridPerMm), ClipperLib::jtMiter, ClipperLib::etClosedLine);
     ClipperLib::Paths grown;
     offset.Execute(grown, by_mm * kGridPerMm);
-    Ring result;
     for (const ClipperLib::Path& contour : grown) {
-        if (contour.size() >= 3 && ClipperLib::Orientation(contour) && result.empty()) {
-            for (const ClipperLib::IntPoint& point : contour) {
-                result.emplace_back(static_cast<double>(point.X) / kGridPerMm,
-                                    static_cast<double>(point.Y) / kGridPerMm);
-            }
+        if (contour.size() >= 3 && ClipperLib::Orientation(contour)) {
+            return ring_of(contour, kGridPerMm);
         }
     }
-    return result;
+    return {};
 }
 
 // A cell of its own that is no strip: as long and as wide as the middle of it.
@@ -125,8 +115,8 @@ public:
         }
         problem.length.assign(steps_.begin(), steps_.begin() + total_);
         problem.good = [&](int first, int count) {
-            const bool winds = std::any_of(
-                places.windings.begin(), places.windings.end(), [&](int cell) {
+            const bool winds =
+                std::any_of(places.windings.begin(), places.windings.end(), [&](int cell) {
                     const int behind = (cell - first % total_ + total_) % total_;
                     return behind > 0 && behind < count;
                 });
