@@ -152,7 +152,7 @@ CutProgram plan_sheet(const Sheet& sheet,
     }
     Eigen::Vector2d at = Eigen::Vector2d::Zero();
     for (const Operation operation : {Operation::Engrave, Operation::Score, Operation::Cut}) {
-        for (CutPath& path : order_paths(collector.take(operation), at, context)) {
+        for (CutPath& path : order_paths(collector.take(operation), at, {}, context)) {
             at = path.points.back();
             program.paths.push_back(std::move(path));
         }
