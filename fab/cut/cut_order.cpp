@@ -93,10 +93,10 @@ std::vector<double> start_places(const CutPath& path) {
     return places;
 }
 
-std::vector<CutPath> order_paths(std::vector<CutPath> paths,
-                                 const Eigen::Vector2d& from,
-                                 const OrderRules& rules,
-                                 const geometry::Context& context) {
+std::vector<OrderedPath> find_order(const std::vector<CutPath>& paths,
+                                    const Eigen::Vector2d& from,
+                                    const OrderRules& rules,
+                                    const geometry::Context& context) {
     TourProblem problem;
     problem.from = from;
     problem.before = rules.before;
@@ -113,15 +113,29 @@ std::vector<CutPath> order_paths(std::vector<CutPath> paths,
         problem.places.push_back(place_of(paths[i], starts_mm[i]));
     }
     problem.evaluations = evaluations_for(paths, rules.evaluations_each);
+    std::vector<OrderedPath> order;
+    order.reserve(paths.size());
+    for (const TourStop& stop : shortest_tour(problem, context)) {
+        const bool closed = is_closed(paths[stop.stop]);
+        order.push_back({stop.stop, closed ? starts_mm[stop.stop][stop.start] : 0.0,
+                         !closed && stop.start == 1});
+    }
+    return order;
+}
+
+CutPath as_ordered(CutPath path, const OrderedPath& place) {
+    CutPath started = started_at(std::move(path), place.start_mm);
+    return place.backward ? reversed(std::move(started)) : started;
+}
+
+std::vector<CutPath> order_paths(std::vector<CutPath> paths,
+                                 const Eigen::Vector2d& from,
+                                 const OrderRules& rules,
+                                 const geometry::Context& context) {
     std::vector<CutPath> ordered;
     ordered.reserve(paths.size());
-    for (const TourStop& stop : shortest_tour(problem, context)) {
-        CutPath& path = paths[stop.stop];
-        if (is_closed(path)) {
-            ordered.push_back(started_at(std::move(path), starts_mm[stop.stop][stop.start]));
-        } else {
-            ordered.push_back(stop.start == 0 ? std::move(path) : reversed(std::move(path)));
-        }
+    for (const OrderedPath& place : find_order(paths, from, rules, context)) {
+        ordered.push_back(as_ordered(std::move(paths[place.path]), place));
     }
     return ordered;
 }

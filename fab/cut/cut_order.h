@@ -35,9 +35,24 @@ struct OrderRules {
 // Points of a closed path that are worth starting at: its corners, and long edges parted.
 std::vector<double> start_places(const CutPath& path);
 
+// Where a path comes in the order, and how it is run: an open one from its other end if backward.
+struct OrderedPath {
+    std::size_t path = 0;
+    double start_mm = 0.0;  // Of a closed path, along its points as they are given.
+    bool backward = false;
+};
+
 // Every path of `paths` exactly once; open ones may be reversed, closed ones may start anywhere and
 // run either way. All paths are of one operation. The tour begins at `from` and ends anywhere.
 // Deterministic.
+std::vector<OrderedPath> find_order(const std::vector<CutPath>& paths,
+                                    const Eigen::Vector2d& from,
+                                    const OrderRules& rules = {},
+                                    const geometry::Context& context = {});
+
+CutPath as_ordered(CutPath path, const OrderedPath& place);
+
+// The same with the paths put into that order.
 std::vector<CutPath> order_paths(std::vector<CutPath> paths,
                                  const Eigen::Vector2d& from,
                                  const OrderRules& rules = {},

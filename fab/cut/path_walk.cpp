@@ -117,4 +117,13 @@ std::vector<Polyline> burnt_runs(const CutPath& path) {
     return runs;
 }
 
+std::vector<Polyline> drawn_runs(const CutPath& path) {
+    std::vector<Polyline> runs = burnt_runs(path);
+    if (runs.size() > 1 && is_closed(path)) {
+        runs.back().insert(runs.back().end(), runs.front().begin() + 1, runs.front().end());
+        runs.erase(runs.begin());
+    }
+    return runs;
+}
+
 }  // namespace leafcutter::fab

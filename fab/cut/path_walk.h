@@ -35,4 +35,7 @@ CutPath reversed(CutPath path);
 // The parts of the path between its tabs, in order: all of it if there is none.
 std::vector<Polyline> burnt_runs(const CutPath& path);
 
+// The same for drawings: a closed path's last run goes on with its first, whatever its start.
+std::vector<Polyline> drawn_runs(const CutPath& path);
+
 }  // namespace leafcutter::fab
