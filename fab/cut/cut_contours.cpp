@@ -11,6 +11,7 @@
 #include "fab/cut/lead_in.h"
 #include "fab/cut/micro_tabs.h"
 #include "fab/cut/path_walk.h"
+#include "fab/nest/shape.h"
 
 namespace leafcutter::fab {
 
@@ -82,11 +83,35 @@ private:
         const TabOptions options{wishes_.params.tabs, wishes_.params.tab_mm};
         for (std::size_t c = 0; c < own.size(); ++c) {
             const CutPath& contour = contours_.outer[c];
-            const int found =
-                add_tabs(contour.points, own[c], contours_.marks[contour.piece], options);
+            const int found = add_tabs(contour.points, own[c], kept_from_tabs(c), options);
             result_.facts.tabs += found;
             result_.facts.tabs_dropped += options.count - found;
         }
+        for (const CutPath& path : shared_.paths) {
+            const std::vector<double> stations = stations_mm(path.points);
+            for (const DarkStretch& tab : path.tabs) {
+                room_.keep_from({point_at(path.points, stations, tab.from_mm),
+                                 point_at(path.points, stations, tab.to_mm)});
+            }
+        }
+    }
+
+    // Marks of the piece, and contours of others: a tab that a neighbour's cut runs along holds
+    // nothing.
+    std::vector<Segment> kept_from_tabs(std::size_t contour) {
+        constexpr double kNearMm = 2.0;
+        std::vector<Segment> lines = contours_.marks[contours_.outer[contour].piece];
+        const Box box = bounds(contours_.outer[contour].points);
+        for (std::size_t i = 0; i < contours_.outer.size(); ++i) {
+            const Polyline& other = contours_.outer[i].points;
+            if (i == contour || !box.near(bounds(other), kNearMm)) {
+                continue;
+            }
+            for (std::size_t k = 1; k < other.size(); ++k) {
+                lines.push_back({other[k - 1], other[k]});
+            }
+        }
+        return lines;
     }
 
     bool is_outer(std::size_t path) const { return path < shared_.paths.size(); }

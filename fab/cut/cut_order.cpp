@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fab/cut/cut_cooling.h"
 #include "fab/cut/cut_tour.h"
 #include "fab/cut/path_walk.h"
 #include "fab/nest/collision.h"
@@ -119,6 +120,11 @@ std::vector<OrderedPath> find_order(const std::vector<CutPath>& paths,
         const bool closed = is_closed(paths[stop.stop]);
         order.push_back({stop.stop, closed ? starts_mm[stop.stop][stop.start] : 0.0,
                          !closed && stop.start == 1});
+    }
+    if (rules.heat > 0.0 && !paths.empty()) {
+        const HeatModel model(paths, rules.cooling);
+        const CoolingTask task{model, from, problem.before, starts_mm, rules.heat};
+        return cooled(task, std::move(order), context);
     }
     return order;
 }

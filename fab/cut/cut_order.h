@@ -25,7 +25,7 @@ struct OrderRules {
     // is empty: at start_places.
     std::vector<std::vector<double>> starts_mm;
 
-    double heat = 0.0;  // 0: travel alone; 1: as cool as can be. See cooled (cut_heat.h).
+    double heat = 0.0;  // 0: travel alone; 1: as cool as can be. See cut_cooling.h.
     HeatOptions cooling;
 
     // Distances looked at for each path to improve the tour; a sheet of many paths gets fewer.
@@ -34,13 +34,6 @@ struct OrderRules {
 
 // Points of a closed path that are worth starting at: its corners, and long edges parted.
 std::vector<double> start_places(const CutPath& path);
-
-// Where a path comes in the order, and how it is run: an open one from its other end if backward.
-struct OrderedPath {
-    std::size_t path = 0;
-    double start_mm = 0.0;  // Of a closed path, along its points as they are given.
-    bool backward = false;
-};
 
 // Every path of `paths` exactly once; open ones may be reversed, closed ones may start anywhere and
 // run either way. All paths are of one operation. The tour begins at `from` and ends anywhere.

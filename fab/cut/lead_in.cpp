@@ -18,6 +18,7 @@ using Eigen::Vector2d;
 constexpr double kSlackMm = 0.02;  // The way of the beam lies this near to where it should.
 constexpr double kPierceMm = 0.1;  // A hole is wider than a cut.
 constexpr double kNarrowestMm = 0.01;
+constexpr double kFromTabMm = 0.5;
 
 // Away from the path first, then more and more along it.
 constexpr std::array<double, 7> kTurnsDeg{0.0, 30.0, -30.0, 55.0, -55.0, 75.0, -75.0};
@@ -43,12 +44,17 @@ Vector2d outward_at(const Polyline& points, double at_mm) {
 
 LeadInRoom::LeadInRoom(const Sheet& sheet, std::span<const Ring> outlines, double kerf_mm)
     : outlines_({sheet.size.width_mm, sheet.size.height_mm}),
+      tabs_({sheet.size.width_mm, sheet.size.height_mm}),
       extent_(sheet.size.width_mm, sheet.size.height_mm),
       remnant_(sheet.outline),
       kerf_mm_(kerf_mm) {
     for (const Ring& outline : outlines) {
         outlines_.add(outline);
     }
+}
+
+void LeadInRoom::keep_from(const Segment& tab) {
+    tabs_.add({tab.from, tab.to});
 }
 
 std::optional<Vector2d> LeadInRoom::begin(const Polyline& points,
@@ -75,7 +81,8 @@ bool LeadInRoom::is_free(const Vector2d& begin, const Vector2d& start) const {
     const Vector2d near = start + std::max(kSlackMm, kNarrowestMm) * (begin - start).normalized();
     const Vector2d still = Vector2d::Zero();
     return !outlines_.collides({begin, near}, still, std::max(kNarrowestMm, half - kSlackMm)) &&
-           !outlines_.collides({begin, begin}, still, half + kPierceMm);
+           !outlines_.collides({begin, begin}, still, half + kPierceMm) &&
+           !tabs_.collides({begin, start}, still, kFromTabMm);
 }
 
 }  // namespace leafcutter::fab

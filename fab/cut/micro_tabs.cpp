@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kClearMm = 0.5;         // Between a tab and a mark,
+constexpr double kClearMm = 0.5;         // Between a tab and a line,
 constexpr double kFromCornerMm = 1.0;    // a corner, the end of a path
 constexpr double kBetweenMm = 3.0;       // or another tab.
 constexpr double kCornerCosine = 0.966;  // Of 15 degrees.
@@ -44,9 +44,9 @@ double end_of_band(const Polyline& whole, const std::vector<double>& stations) {
 class TabPlaces {
 public:
     TabPlaces(std::span<CutPath* const> paths,
-              std::span<const Segment> marks,
+              std::span<const Segment> lines,
               const TabOptions& options)
-        : paths_(paths), marks_(marks), half_mm_(options.length_mm / 2.0) {
+        : paths_(paths), lines_(lines), half_mm_(options.length_mm / 2.0) {
         for (std::size_t p = 0; p < paths.size(); ++p) {
             stations_.push_back(stations_mm(paths[p]->points));
             for (double at = kStepMm; at < stations_[p].back(); at += kStepMm) {
@@ -122,13 +122,13 @@ private:
         const Polyline& points = paths_[place.path]->points;
         const std::vector<double>& stations = stations_[place.path];
         const Segment tab{point_at(points, stations, low), point_at(points, stations, high)};
-        return std::none_of(marks_.begin(), marks_.end(), [&](const Segment& mark) {
-            return squared_distance(tab, mark) < kClearMm * kClearMm;
+        return std::none_of(lines_.begin(), lines_.end(), [&](const Segment& line) {
+            return squared_distance(tab, line) < kClearMm * kClearMm;
         });
     }
 
     std::span<CutPath* const> paths_;
-    std::span<const Segment> marks_;
+    std::span<const Segment> lines_;
     double half_mm_;
     std::vector<std::vector<double>> stations_;
     std::vector<Candidate> candidates_;
@@ -138,11 +138,11 @@ private:
 
 int add_tabs(const Polyline& whole,
              std::span<CutPath* const> paths,
-             std::span<const Segment> marks,
+             std::span<const Segment> lines,
              const TabOptions& options) {
     const std::vector<double> stations = stations_mm(whole);
     const double first = end_of_band(whole, stations);
-    TabPlaces places(paths, marks, options);
+    TabPlaces places(paths, lines, options);
     int found = 0;
     for (int k = 0; k < options.count; ++k) {
         double at = first + stations.back() * k / options.count;

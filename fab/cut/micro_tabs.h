@@ -17,10 +17,11 @@ struct TabOptions {
 
 // Gives the contour `whole`, which the `paths` are all or a part of, its tabs: the first near the
 // end of a long piece, the others evenly round, each on the nearest straight stretch clear of
-// corners and of `marks` (lines and slits of the piece). Returns how many found a place.
+// corners and of `lines` (marks and slits of the piece, contours of others). Returns how many found
+// a place.
 int add_tabs(const Polyline& whole,
              std::span<CutPath* const> paths,
-             std::span<const Segment> marks,
+             std::span<const Segment> lines,
              const TabOptions& options);
 
 }  // namespace leafcutter::fab
