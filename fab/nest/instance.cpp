@@ -129,7 +129,7 @@ Problem make_problem(const NestInstance& instance) {
         const InstanceItem& item = instance.items[i];
         NestPart part = make_part(item.outline, problem.grow, item.allowed_deg);
         part.min_quality = item.min_quality.value_or(std::numeric_limits<int>::max());
-        std::vector<TurnedPart> turned(item.allowed_deg.size());
+        std::vector<TurnedPart> turned(item.allowed_deg.is_list() ? item.allowed_deg.size() : 0);
         for (std::size_t k = 0; k < turned.size(); ++k) {
             turn_part(part, item.allowed_deg[k], turned[k]);
         }
@@ -213,10 +213,8 @@ void prove_bin(const NestInstance& instance,
 }
 
 void prove_rotation(const InstanceItem& item, double rotation_deg) {
-    const bool fine = item.allowed_deg.empty() ||
-                      std::any_of(item.allowed_deg.begin(), item.allowed_deg.end(),
-                                  [&](double angle) { return angle == rotation_deg; });
-    if (!fine) {
+    constexpr double kToleranceDeg = 1e-9;
+    if (!item.allowed_deg.allows(rotation_deg, kToleranceDeg)) {
         throw geometry::Error(
             geometry::ErrorKind::SelfCheck, "nest-proof",
             fmt::format("nest: item {} lies at a rotation that is not allowed", item.id));
