@@ -10,8 +10,9 @@ bool is_digit(char letter) {
     return letter >= '0' && letter <= '9';
 }
 
-// A plain decimal number: Grbl knows no exponent. Advances `at` behind it.
-std::optional<double> read_number(std::string_view text, std::size_t& at) {
+}  // namespace
+
+std::optional<double> read_decimal(std::string_view text, std::size_t& at) {
     double sign = 1.0;
     if (at < text.size() && (text[at] == '-' || text[at] == '+')) {
         sign = text[at] == '-' ? -1.0 : 1.0;
@@ -37,8 +38,6 @@ std::optional<double> read_number(std::string_view text, std::size_t& at) {
     }
     return sign * value / scale;
 }
-
-}  // namespace
 
 std::string strip_gcode(std::string_view line) {
     std::string stripped;
@@ -68,7 +67,7 @@ GcodeWords split_words(std::string_view stripped) {
             return result;
         }
         ++at;
-        const std::optional<double> value = read_number(stripped, at);
+        const std::optional<double> value = read_decimal(stripped, at);
         if (!value) {
             result.fault = WordFault::BadNumber;
             return result;

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,9 @@ struct GcodeWord {
 std::string strip_gcode(std::string_view line);
 
 enum class WordFault { LetterExpected, BadNumber };
+
+// A plain decimal number at `at`, which moves behind it: Grbl knows no exponent.
+std::optional<double> read_decimal(std::string_view text, std::size_t& at);
 
 struct GcodeWords {
     std::vector<GcodeWord> words;
