@@ -16,6 +16,7 @@ constexpr char kReset = 0x18;
 constexpr char kJogCancel = static_cast<char>(0x85);
 constexpr milliseconds kPollInterval{200};
 constexpr milliseconds kFastPollInterval{100};
+constexpr double kFastFeed = 540.0;  // mm/min
 
 constexpr bool moves(MachineState state) {
     return state == MachineState::Run || state == MachineState::Jog || state == MachineState::Home;
@@ -235,7 +236,9 @@ void GrblSession::fill() {
     }
     std::deque<Pending>& source = job_runs() ? job_ : commands_;
     while (!source.empty()) {
-        const bool wait = !pending_.empty() && (source.front().alone || pending_.back().alone);
+        const bool wait =
+            (!pending_.empty() && (source.front().alone || pending_.back().alone)) ||
+            (source.front().origin == Origin::Job && !may_send_line(progress_.lines_sent));
         if (wait || !send_line(source.front())) {
             return;
         }
@@ -244,8 +247,10 @@ void GrblSession::fill() {
 }
 
 milliseconds GrblSession::poll_interval() const {
-    const bool hurry = halt_ != Halt::None || finishing_ || resume_wanted_ || standing_since_ ||
-                       beam_stands_since_;
+    // Where a power cut stops the beam is known to half of what it burns between two reports.
+    const bool fast = job_runs() && status_.feed_mm_per_min > kFastFeed;
+    const bool hurry = fast || halt_ != Halt::None || finishing_ || resume_wanted_ ||
+                       standing_since_ || beam_stands_since_;
     return hurry ? kFastPollInterval : kPollInterval;
 }
 
