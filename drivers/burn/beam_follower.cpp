@@ -10,6 +10,7 @@ using Kind = JournalRecord::Kind;
 
 // Of what may be on the wire without being known to be: short lines go together, a long one alone.
 constexpr double kAheadMm = 0.5;
+constexpr double kAstrayMm = 1.0;
 
 Point work_position(const DeviceStatus& status) {
     return {status.work_position_mm[0], status.work_position_mm[1]};
@@ -55,7 +56,9 @@ void BeamFollower::observe(const JobProgress& progress, const DeviceStatus& stat
     if (status.reports != std::exchange(reports_, status.reports) && reports_known_) {
         sink_->note({.kind = Kind::Position, .t_s = now, .at_mm = work_position(status)});
         tracker_.sent(reserved_);
-        astray_ = tracker_.position(work_position(status), now) ? 0 : astray_ + 1;
+        const bool there = tracker_.position(work_position(status), now) ||
+                           tracker_.near(work_position(status), kAstrayMm);
+        astray_ = there ? 0 : astray_ + 1;
     }
     reports_known_ = true;  // The first one seen is older than the program.
     burnt_mm_ = path_->burnt_at(tracker_.heard().likely_mm);

@@ -73,8 +73,7 @@ double BeamTracker::reckoned_mm(double t_s) const {
 }
 
 std::optional<BeamTracker::Place> BeamTracker::find(const Point& at_mm,
-                                                    double most_mm,
-                                                    double expected_mm) const {
+                                                    const Search& search) const {
     const std::vector<PathPiece>& pieces = path_.pieces();
     std::optional<Place> place;
     if (pieces.empty()) {
@@ -83,7 +82,7 @@ std::optional<BeamTracker::Place> BeamTracker::find(const Point& at_mm,
     const double least_mm = range_.least_mm;
     for (std::size_t i = path_.piece_at(least_mm); i < pieces.size(); ++i) {
         const double begin = path_.begin_mm(i);
-        if (begin > most_mm) {
+        if (begin > search.most_mm) {
             break;
         }
         const Point& from = path_.from_mm(i);
@@ -92,15 +91,15 @@ std::optional<BeamTracker::Place> BeamTracker::find(const Point& at_mm,
         const double dy = (pieces[i].to_mm[1] - from[1]) / length;
         const double along = (at_mm[0] - from[0]) * dx + (at_mm[1] - from[1]) * dy;
         const double on = std::clamp(along, std::max(0.0, least_mm - begin),
-                                     std::max(0.0, std::min(length, most_mm - begin)));
+                                     std::max(0.0, std::min(length, search.most_mm - begin)));
         const double off = std::hypot(from[0] + on * dx - at_mm[0], from[1] + on * dy - at_mm[1]);
-        if (off > options_.tolerance_mm) {
+        if (off > search.tolerance_mm) {
             continue;
         }
         const double way = begin + on;
         place = place.value_or(Place{way, way, way});
         place->last_mm = way;
-        if (std::abs(way - expected_mm) < std::abs(place->nearest_mm - expected_mm)) {
+        if (std::abs(way - search.expected_mm) < std::abs(place->nearest_mm - search.expected_mm)) {
             place->nearest_mm = way;
         }
     }
@@ -110,9 +109,10 @@ std::optional<BeamTracker::Place> BeamTracker::find(const Point& at_mm,
 bool BeamTracker::position(const Point& at_mm, double t_s) {
     const double passed = std::max(0.0, t_s - heard_s_);
     const double expected = reckoned_mm(t_s);
-    std::optional<Place> place = find(at_mm, within_reach(passed), expected);
+    std::optional<Place> place =
+        find(at_mm, {within_reach(passed), expected, options_.tolerance_mm});
     if (!place) {
-        place = find(at_mm, sent_mm_, expected);
+        place = find(at_mm, {sent_mm_, expected, options_.tolerance_mm});
     }
     if (!place) {
         return false;
@@ -128,9 +128,13 @@ bool BeamTracker::position(const Point& at_mm, double t_s) {
     return true;
 }
 
+bool BeamTracker::near(const Point& at_mm, double distance_mm) const {
+    return find(at_mm, {sent_mm_, range_.likely_mm, distance_mm}).has_value();
+}
+
 bool BeamTracker::stands(const Point& at_mm, Since since) {
     const double expected = since == Since::Alone ? sent_mm_ : range_.likely_mm;
-    const std::optional<Place> place = find(at_mm, sent_mm_, expected);
+    const std::optional<Place> place = find(at_mm, {sent_mm_, expected, options_.tolerance_mm});
     if (!place) {
         return false;
     }

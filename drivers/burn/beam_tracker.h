@@ -44,6 +44,9 @@ public:
     enum class Since { Heard, Alone };
     bool stands(const Point& at_mm, Since since = Since::Heard);
 
+    // Whether the head may be there, that far from the path at most.
+    bool near(const Point& at_mm, double distance_mm) const;
+
     // The head as last heard of.
     WayRange heard() const { return range_; }
 
@@ -60,7 +63,13 @@ private:
         double last_mm;
     };
 
-    std::optional<Place> find(const Point& at_mm, double most_mm, double expected_mm) const;
+    struct Search {
+        double most_mm;
+        double expected_mm;
+        double tolerance_mm;
+    };
+
+    std::optional<Place> find(const Point& at_mm, const Search& search) const;
     double within_reach(double seconds) const;
     double speed(const PathPiece& piece) const;
     double walk(double way_mm, double seconds, double pace) const;

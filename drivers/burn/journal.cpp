@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -16,6 +17,7 @@ using Kind = JournalRecord::Kind;
 
 constexpr std::string_view kFormat = "leafcutter-journal/1";
 constexpr double kSlowestReports = 0.2;  // Seconds.
+constexpr double kSamePlace = 0.1;       // mm
 
 constexpr std::array<std::pair<Kind, char>, 6> kLetters{{{Kind::May, 'M'},
                                                          {Kind::Sent, 'S'},
@@ -98,9 +100,14 @@ std::optional<JournalRecord> read_record(const std::vector<std::string_view>& fi
     return record;
 }
 
+double distance(const Point& a, const Point& b) {
+    return std::hypot(a[0] - b[0], a[1] - b[1]);
+}
+
 // What a journal's records add up to.
 struct Replay {
     BeamTracker tracker;
+    const BeamPath& path;
     std::size_t may = 0;
     std::size_t sent = 0;
     double heard_s = 0.0;
@@ -110,7 +117,7 @@ struct Replay {
     bool stands = false;  // Where it does, is known.
     bool kept = false;    // By the controller, too.
 
-    explicit Replay(const BeamPath& path, const TrackerOptions& options) : tracker(path, options) {}
+    Replay(const BeamPath& of, const TrackerOptions& options) : tracker(of, options), path(of) {}
 
     void take(const JournalRecord& record) {
         switch (record.kind) {
@@ -142,7 +149,12 @@ struct Replay {
                 break;
             case Kind::Found:
                 tracker.sent(may);
-                stand(record, BeamTracker::Since::Alone);
+                if (stands) {  // Known already: this only says whether the controller knows, too.
+                    const Point at = path.point_at(tracker.heard().likely_mm);
+                    kept = record.end == BeamEnd::Stands && distance(at, record.at_mm) < kSamePlace;
+                } else {
+                    stand(record, BeamTracker::Since::Alone);
+                }
                 break;
         }
     }

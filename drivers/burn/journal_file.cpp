@@ -62,8 +62,14 @@ JournalFile::JournalFile(const fs::path& path, const JournalHeader& header)
       thread_([this](const std::stop_token& stop) { loop(stop); }) {}
 
 JournalFile::~JournalFile() {
+    finish();
+}
+
+void JournalFile::finish() {
     thread_.request_stop();
-    thread_.join();
+    if (thread_.joinable()) {
+        thread_.join();
+    }
 }
 
 void JournalFile::note(const JournalRecord& record) {

@@ -24,7 +24,6 @@ public:
     // Makes a new file, on disk with its name when this returns. Throws std::system_error.
     JournalFile(const std::filesystem::path& path, const JournalHeader& header);
 
-    // Everything noted is on disk, or the disk failed.
     ~JournalFile() override;
     JournalFile(const JournalFile&) = delete;
     JournalFile& operator=(const JournalFile&) = delete;
@@ -33,6 +32,9 @@ public:
     void note(const JournalRecord& record) override;
 
     std::size_t lines_on_disk() const override { return lines_on_disk_.load(); }
+
+    // When it returns, everything noted is on disk, or the disk failed. No more may be noted.
+    void finish();
 
     // The disk takes nothing more.
     bool failed() const { return failed_.load(); }
