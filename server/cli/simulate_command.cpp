@@ -57,7 +57,7 @@ void simulate_grbl(const SimulateOptions& options) {
     machine.bed_width_mm = options.width_mm.value_or(machine.bed_width_mm);
     machine.bed_height_mm = options.height_mm.value_or(machine.bed_height_mm);
     if (!options.fault.empty()) {
-        host_options.fault = drivers::parse_fault(options.fault);
+        host_options.faults = drivers::parse_faults(options.fault);
     }
     const InterruptWatch interrupt;  // Before the machine's thread.
     const drivers::SimHost host(open_link(options), host_options);

@@ -42,11 +42,11 @@ inline std::string mixed_job(double feed) {
 // The program under way in a machine, followed as the daemon follows it.
 class ResumeBench {
 public:
-    explicit ResumeBench(std::string program, std::optional<Fault> fault = {})
+    explicit ResumeBench(std::string program, std::vector<Fault> faults = {})
         : program_(std::move(program)),
           path_(std::make_shared<BeamPath>(program_)),
           journal_(std::make_shared<KeptJournal>()),
-          bench_({}, fault) {
+          bench_({}, std::move(faults)) {
         EXPECT_TRUE(bench_.attach());
         begun_s_ = bench_.now_s();
         follower_ = std::make_unique<BeamFollower>(

@@ -19,8 +19,8 @@ class SteppedMachine {
 public:
     using Time = GrblSession::Time;
 
-    explicit SteppedMachine(const GrblMachineOptions& options = {}, std::optional<Fault> fault = {})
-        : machine_(options, fault), session_(now_) {}
+    explicit SteppedMachine(const GrblMachineOptions& options = {}, std::vector<Fault> faults = {})
+        : machine_(options, std::move(faults)), session_(now_) {}
 
     GrblSession& session() { return session_; }
     GrblMachine& machine() { return machine_.machine(); }
