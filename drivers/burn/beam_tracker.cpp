@@ -72,6 +72,11 @@ double BeamTracker::reckoned_mm(double t_s) const {
     return std::min(sent_mm_, walk(range_.likely_mm, passed, pace_));
 }
 
+double BeamTracker::furthest_mm(double t_s) const {
+    constexpr double kClock = 1.05;  // Reports don't arrive to the millisecond.
+    return std::min(sent_mm_, walk(range_.most_mm, std::max(0.0, t_s - heard_s_), kClock));
+}
+
 std::optional<BeamTracker::Place> BeamTracker::find(const Point& at_mm,
                                                     const Search& search) const {
     const std::vector<PathPiece>& pieces = path_.pieces();

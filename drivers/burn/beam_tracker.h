@@ -53,6 +53,9 @@ public:
     // The head at that time, if it went on as before.
     double reckoned_mm(double t_s) const;
 
+    // No further than that by then, unless its feed was raised.
+    double furthest_mm(double t_s) const;
+
     // The end of all that was sent.
     double sent_mm() const { return sent_mm_; }
 

@@ -224,10 +224,8 @@ BeamKnowledge knowledge_of(const BeamPath& path, const Journal& journal) {
         const double due_s = std::max(replay.heard_s, replay.report_s + replay.report_every_s);
         const double stopped = tracker.reckoned_mm((replay.heard_s + due_s) / 2.0);
         const bool drains = replay.end == BeamEnd::Unknown || replay.end == BeamEnd::Silent;
-        way.most_mm =
-            std::max(way.most_mm, drains ? path.way_after(replay.may) : tracker.reckoned_mm(due_s));
-        way.least_mm =
-            std::max(way.least_mm, std::min(tracker.reckoned_mm(replay.heard_s), way.most_mm));
+        const double most = drains ? path.way_after(replay.may) : tracker.furthest_mm(due_s);
+        way.most_mm = std::max(way.most_mm, most);
         way.likely_mm = replay.end == BeamEnd::Unknown ? path.way_after(replay.sent) : stopped;
         way.likely_mm = std::clamp(way.likely_mm, way.least_mm, way.most_mm);
     }

@@ -71,8 +71,8 @@ struct BeamKnowledge {
     Point at_mm{};
     bool position_kept = false;  // The controller still knows where the head stands.
 
-    // To within a millimetre.
-    bool certain() const { return most_mm - least_mm <= 2.0; }
+    // To within a millimetre, with the overlap of a remainder.
+    bool certain() const { return most_mm - least_mm <= 1.8; }
     double best_mm() const { return certain() ? (least_mm + most_mm) / 2.0 : likely_mm; }
 };
 

@@ -190,7 +190,7 @@ private:
         const double said = known.certain() ? known.best_mm() : cut_.burnt();
         const double seam = std::abs(cut_.finish(said));
         tally_.worst_seam_mm = std::max(tally_.worst_seam_mm, seam);
-        EXPECT_LE(seam, kMost + 0.1);
+        EXPECT_LE(seam, kMost + 0.02);
     }
 
     ResumeBench cut_;
