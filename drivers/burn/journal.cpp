@@ -17,7 +17,8 @@ using Kind = JournalRecord::Kind;
 
 constexpr std::string_view kFormat = "leafcutter-journal/1";
 constexpr double kSlowestReports = 0.2;  // Seconds.
-constexpr double kSamePlace = 0.1;       // mm
+constexpr double kReportDelay = 0.01;
+constexpr double kSamePlace = 0.1;  // mm
 
 constexpr std::array<std::pair<Kind, char>, 6> kLetters{{{Kind::May, 'M'},
                                                          {Kind::Sent, 'S'},
@@ -221,7 +222,8 @@ BeamKnowledge knowledge_of(const BeamPath& path, const Journal& journal) {
     WayRange way = tracker.heard();
     if (!replay.stands) {
         // It stopped between its last word and the next that was due, or did all it had been sent.
-        const double due_s = std::max(replay.heard_s, replay.report_s + replay.report_every_s);
+        const double due_s =
+            std::max(replay.heard_s, replay.report_s + replay.report_every_s + kReportDelay);
         const double stopped = tracker.reckoned_mm((replay.heard_s + due_s) / 2.0);
         const bool drains = replay.end == BeamEnd::Unknown || replay.end == BeamEnd::Silent;
         const double most = drains ? path.way_after(replay.may) : tracker.furthest_mm(due_s);

@@ -16,7 +16,6 @@ constexpr char kReset = 0x18;
 constexpr char kJogCancel = static_cast<char>(0x85);
 constexpr milliseconds kPollInterval{200};
 constexpr milliseconds kFastPollInterval{100};
-constexpr double kFastFeed = 540.0;  // mm/min
 
 constexpr bool moves(MachineState state) {
     return state == MachineState::Run || state == MachineState::Jog || state == MachineState::Home;
@@ -247,9 +246,8 @@ void GrblSession::fill() {
 }
 
 milliseconds GrblSession::poll_interval() const {
-    // Where a power cut stops the beam is known to half of what it burns between two reports.
-    const bool fast = job_runs() && status_.feed_mm_per_min > kFastFeed;
-    const bool hurry = fast || halt_ != Halt::None || finishing_ || resume_wanted_ ||
+    // Of a job: where a power cut stops the beam is known to what it burns between two reports.
+    const bool hurry = job_runs() || halt_ != Halt::None || finishing_ || resume_wanted_ ||
                        standing_since_ || beam_stands_since_;
     return hurry ? kFastPollInterval : kPollInterval;
 }

@@ -1,10 +1,7 @@
 // Every fault of a link and of a machine, at every so many lines of a real job, met by doing
 // nothing, by a hold and a resume, and by a cancel: held against what may be seen from outside.
-//
-// LEAFCUTTER_WHOLE_MATRIX=1 tries every tenth line instead of some.
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <map>
@@ -18,6 +15,7 @@
 namespace leafcutter::drivers {
 namespace {
 
+constexpr std::size_t kEvery = 10;   // Lines.
 constexpr double kMost = 1.0;        // mm of a seam burnt twice or left out.
 constexpr double kDarkWithin = 0.1;  // Seconds.
 constexpr double kStep = 0.005;      // Of the bench.
@@ -221,18 +219,15 @@ TEST(FaultMatrix, BurnsNothingTwiceNothingInVainAndNothingAfterItsEnd) {
     const std::string program = test::woven_program(fab::Dialect::Grbl, 5);
     const BeamPath path(program);
     ASSERT_GT(path.lines(), 300U);
-    const char* whole = std::getenv("LEAFCUTTER_WHOLE_MATRIX");
-    const std::size_t every = whole != nullptr ? 10 : std::max<std::size_t>(path.lines() / 4, 1);
     const std::size_t before = threads();
-    fmt::print("{} lines, {:.0f} mm to burn; every {} lines\n", path.lines(), path.burn_mm(),
-               every);
+    fmt::print("{} lines, {:.0f} mm to burn\n", path.lines(), path.burn_mm());
     fmt::print(
         "| fault        | act          | ends                               | dark ms | seam "
         "mm | off mm | unsure | guess mm |\n");
     for (const std::string_view fault : kFaults) {
         for (const Act act : {Act::None, Act::HoldAndResume, Act::Cancel}) {
             Tally tally;
-            for (std::size_t line = 10; line < path.lines(); line += every) {
+            for (std::size_t line = 10; line < path.lines(); line += kEvery) {
                 SCOPED_TRACE(fmt::format("{}:{} {}", fault, line, name_of(act)));
                 FaultyCut(program, fault, line, act, tally).go();
                 if (testing::Test::HasFailure()) {
