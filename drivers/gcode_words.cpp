@@ -77,4 +77,15 @@ GcodeWords split_words(std::string_view stripped) {
     return result;
 }
 
+std::string without_inline_word(std::string_view stripped) {
+    std::string result(stripped);
+    const std::string_view start = stripped.substr(0, 2);
+    const std::size_t at = result.find('I');
+    if ((start == "M3" || start == "M4" || start == "M5") && at != std::string::npos) {
+        const std::size_t end = result.find_first_not_of("0123456789", at + 1);
+        result.erase(at, end == std::string::npos ? end : end - at);
+    }
+    return result;
+}
+
 }  // namespace leafcutter::drivers

@@ -32,4 +32,8 @@ struct GcodeWords {
 // Takes a stripped line.
 GcodeWords split_words(std::string_view stripped);
 
+// A stripped line without the I of Marlin's M3, M4, M5: inline power, which goes with the moves as
+// that of the other families always does.
+std::string without_inline_word(std::string_view stripped);
+
 }  // namespace leafcutter::drivers

@@ -51,23 +51,6 @@ public:
 
     enum class Motion { Rapid = 0, Linear = 1, ArcCw = 2, ArcCcw = 3, None = 80 };
 
-    Interpretation run(std::string_view stripped, const Rules& rules);
-
-    // "$J=" without the "$J=": moves without touching the modal state.
-    Interpretation run_jog(std::string_view stripped, const Rules& rules);
-
-    // Modal state of power-up. Forgets G92; keeps G54..G59, G28, G30.
-    void reset(const Axes& position_mm);
-    void set_position(const Axes& position_mm) { position_mm_ = position_mm; }
-
-    Axes work_offset_mm() const;
-    double spindle_speed() const { return modal_.power_s; }
-    BeamMode beam() const { return modal_.beam; }
-    bool flood() const { return modal_.flood; }
-
-    std::string report_modal(bool inches = false) const;    // "[GC:…]"
-    std::string report_offsets(bool inches = false) const;  // The answer to $#.
-
     struct Modal {
         Motion motion = Motion::Rapid;
         int plane = 17;
@@ -81,6 +64,24 @@ public:
         double power_s = 0.0;
         int tool = 0;
     };
+
+    Interpretation run(std::string_view stripped, const Rules& rules);
+
+    // "$J=" without the "$J=": moves without touching the modal state.
+    Interpretation run_jog(std::string_view stripped, const Rules& rules);
+
+    // Modal state of power-up. Forgets G92; keeps G54..G59, G28, G30.
+    void reset(const Axes& position_mm);
+    void set_position(const Axes& position_mm) { position_mm_ = position_mm; }
+
+    Axes work_offset_mm() const;
+    double spindle_speed() const { return modal_.power_s; }
+    BeamMode beam() const { return modal_.beam; }
+    bool flood() const { return modal_.flood; }
+    const Modal& modal() const { return modal_; }
+
+    std::string report_modal(bool inches = false) const;    // "[GC:…]"
+    std::string report_offsets(bool inches = false) const;  // The answer to $#.
 
 private:
     int read_words(std::string_view stripped, Block& block) const;

@@ -24,19 +24,6 @@ std::size_t number_at(std::string_view text) {
     return number;
 }
 
-// Inline power is what the simulated beam has anyway.
-std::string without_inline_word(const std::string& stripped) {
-    std::string result = stripped;
-    if (starts_with(stripped, "M3") || starts_with(stripped, "M4") || starts_with(stripped, "M5")) {
-        const std::size_t at = result.find('I');
-        if (at != std::string::npos) {
-            const std::size_t end = result.find_first_not_of("0123456789", at + 1);
-            result.erase(at, end == std::string::npos ? end : end - at);
-        }
-    }
-    return result;
-}
-
 }  // namespace
 
 MarlinMachine::MarlinMachine(const MarlinMachineOptions& options) : options_(options) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "drivers/gcode_words.h"
 #include "drivers/sim/beam_log.h"
 #include "drivers/sim/gcode_interpreter.h"
 #include "drivers/sim/motion_queue.h"

@@ -18,7 +18,7 @@ SimHost::SimHost(std::unique_ptr<SimLink> link, const SimHostOptions& options)
     : link_(std::move(link)),
       address_(link_->address()),
       speed_(options.speed),
-      machine_(options.machine, options.fault) {
+      machine_(options.machine, options.faults) {
     if (!(speed_ >= 0.0)) {
         throw std::invalid_argument("speed: must be 0 (as fast as possible) or more");
     }

@@ -5,7 +5,6 @@
 #include <fstream>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,7 +18,7 @@ struct SimHostOptions {
     GrblMachineOptions machine;
     double speed = 1.0;     // Simulated seconds per second; 0: as fast as it can be computed.
     std::string burn_path;  // Beam log as JSON lines; empty: none is written.
-    std::optional<Fault> fault;
+    std::vector<Fault> faults;
 };
 
 class SimHost {

@@ -49,7 +49,7 @@ void set_option(std::string_view key, std::string_view value, SimHostOptions& op
     } else if (key == "height") {
         options.machine.bed_height_mm = read_number(key, value);
     } else if (key == "fault") {
-        options.fault = parse_fault(value);
+        options.faults = parse_faults(value);
     } else {
         throw std::invalid_argument("sim:grbl: unknown option \"" + std::string(key) +
                                     "\"; known are burn, speed, width, height, fault");

@@ -8,13 +8,16 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "drivers/sim/lihuiyu_host.h"
 #include "drivers/sim/sim_host.h"
+#include "server/cli/burn_picture.h"
 #include "server/cli/command.h"
+#include "server/cli/input_file.h"
 #include "server/cli/interrupt.h"
 
 namespace leafcutter::server {
@@ -26,7 +29,9 @@ struct SimulateOptions {
     std::string pty;
     std::optional<unsigned short> tcp_port;
     std::string burn_path;
+    std::string burn_picture;
     std::string fault;
+    std::string faults_path;
     std::optional<double> speed;
     std::optional<double> width_mm;
     std::optional<double> height_mm;
@@ -49,6 +54,24 @@ void run_until_interrupted(const InterruptWatch& interrupt,
     }
 }
 
+std::vector<drivers::Fault> faults_of(const SimulateOptions& options) {
+    constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
+    std::vector<drivers::Fault> faults = drivers::parse_faults(options.fault);
+    if (!options.faults_path.empty()) {
+        const std::vector<std::byte> script = read_input_file(options.faults_path, kMostBytes);
+        const std::vector<drivers::Fault> more =
+            drivers::parse_faults({reinterpret_cast<const char*>(script.data()), script.size()});
+        faults.insert(faults.end(), more.begin(), more.end());
+    }
+    return faults;
+}
+
+void draw_burn(const SimulateOptions& options, const std::vector<drivers::BurntPiece>& burnt) {
+    if (!options.burn_picture.empty()) {
+        write_burn_picture(options.burn_picture, burnt);
+    }
+}
+
 void simulate_grbl(const SimulateOptions& options) {
     drivers::SimHostOptions host_options;
     host_options.burn_path = options.burn_path;
@@ -56,12 +79,11 @@ void simulate_grbl(const SimulateOptions& options) {
     drivers::GrblMachineOptions& machine = host_options.machine;
     machine.bed_width_mm = options.width_mm.value_or(machine.bed_width_mm);
     machine.bed_height_mm = options.height_mm.value_or(machine.bed_height_mm);
-    if (!options.fault.empty()) {
-        host_options.fault = drivers::parse_fault(options.fault);
-    }
+    host_options.faults = faults_of(options);
     const InterruptWatch interrupt;  // Before the machine's thread.
     const drivers::SimHost host(open_link(options), host_options);
     run_until_interrupted(interrupt, fmt::format("grbl:{}", host.address()), [] {});
+    draw_burn(options, host.burnt());
 }
 
 // What the machine complains about goes to stderr, a line each.
@@ -87,6 +109,9 @@ void simulate_lihuiyu(const SimulateOptions& options) {
 }
 
 void simulate(const SimulateOptions& options) {
+    if (!options.burn_picture.empty()) {
+        check_picture_path(options.burn_picture);
+    }
     try {
         if (options.machine == "grbl") {
             simulate_grbl(options);
@@ -112,11 +137,16 @@ void add_simulate_command(CLI::App& app, const CommonOptions& /*common*/) {
     command->add_option("--tcp", options->tcp_port, "Port on the loopback; 0 picks a free one")
         ->excludes(pty);
     command->add_option("--burn", options->burn_path, "Where to write the beam log (JSON lines)");
+    command->add_option("--burn-picture", options->burn_picture,
+                        "Where to draw what was burnt, at the end: .svg or .png");
+    command->add_option("--faults", options->faults_path,
+                        "Of grbl: a script of faults as of --fault, one a line");
     command->add_option("--speed", options->speed,
                         "Simulated seconds per second; 0: as fast as possible");
     command->add_option(
         "--fault", options->fault,
-        "grbl: drop-ok:N corrupt-ok:N stall:N alarm:N reset:N unplug:N, at the N-th line; lihuiyu: "
+        "grbl: drop-byte:N double-byte:N corrupt-byte:N drop-ok:N double-ok:N corrupt-ok:N delay:N "
+        "stall:N alarm:N reset:N power:N unplug:N, at the N-th line, several with commas; lihuiyu: "
         "crc:N crc-always:N busy:N stall:N mute:N power:N lose:N unplug:N, at the N-th packet");
     command->add_option("--width", options->width_mm, "Bed width in mm");
     command->add_option("--height", options->height_mm, "Bed height in mm");

@@ -122,7 +122,7 @@ TEST(GrblDevice, WritesTheBeamLogOfItsOwnSimulatedMachine) {
 
 TEST(GrblDevice, FindsAnUnpluggedMachineAtOnceAndStaysDisconnected) {
     SimHostOptions options;
-    options.fault = parse_fault("unplug:50");
+    options.faults = parse_faults("unplug:50");
     Bench bench(options);
     bench.device->start(program_of(spiral(400)));
     EXPECT_THROW(bench.run_to_end(), LinkLost);
