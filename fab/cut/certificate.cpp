@@ -110,6 +110,10 @@ private:
         for (const std::size_t i : nameless_) {
             context_.check();
             auto found = finder_.by_shape(read_[i], free);
+            if (!found && read_[i].burnt.in_net && read_[i].burnt.marks.empty()) {
+                --certificate_.unread;
+                continue;  // Waste between pieces.
+            }
             if (!found) {
                 ++certificate_.extra_contours;
                 fault(fmt::format("a contour of {} corners is no piece of this job",

@@ -5,15 +5,12 @@
 #include "fab/cut/common_edges.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <map>
 #include <numeric>
 #include <optional>
-#include <unordered_map>
 
+#include "fab/cut/facing_edges.h"
 #include "fab/cut/path_walk.h"
-#include "fab/nest/shape.h"
 
 namespace leafcutter::fab {
 
@@ -21,15 +18,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kLeastShareMm = 0.5;  // Shorter ones are not worth a path of their own.
+// Corners this near to each other become one, so that edges that overlap less share nothing.
 constexpr double kSameNodeMm = 1.5 * kCommonEdgeMm;
-constexpr double kCellMm = 10.0;
-
-// An edge, or a corner: the contour and where in it.
-struct Spot {
-    std::size_t contour = 0;
-    std::size_t index = 0;
-};
+constexpr double kLeastShareMm = kCommonEdgeMm;
 
 // Contours as rings, without the point that closes them.
 std::vector<Ring> rings_of(const std::vector<CutPath>& contours) {
@@ -39,83 +30,6 @@ std::vector<Ring> rings_of(const std::vector<CutPath>& contours) {
     }
     return rings;
 }
-
-class NearEdges {
-public:
-    explicit NearEdges(const std::vector<Ring>& rings) : rings_(rings) {
-        for (std::size_t c = 0; c < rings.size(); ++c) {
-            for (std::size_t i = 0; i < rings[c].size(); ++i) {
-                visit_cells({c, i}, [&](std::uint64_t cell) { cells_[cell].push_back({c, i}); });
-            }
-        }
-    }
-
-    // Calls found(a, b) once for every pair of edges of two contours that face each other within
-    // the tolerance along kLeastShareMm.
-    template <typename Found>
-    void each_pair(const Found& found) const {
-        for (std::size_t c = 0; c < rings_.size(); ++c) {
-            for (std::size_t i = 0; i < rings_[c].size(); ++i) {
-                std::vector<std::pair<std::size_t, std::size_t>> partners;
-                visit_cells({c, i}, [&](std::uint64_t cell) {
-                    for (const Spot& other : cells_.at(cell)) {
-                        if (other.contour > c) {
-                            partners.emplace_back(other.contour, other.index);
-                        }
-                    }
-                });
-                std::sort(partners.begin(), partners.end());
-                partners.erase(std::unique(partners.begin(), partners.end()), partners.end());
-                for (const auto& [contour, index] : partners) {
-                    if (face({c, i}, {contour, index})) {
-                        found(Spot{c, i}, Spot{contour, index});
-                    }
-                }
-            }
-        }
-    }
-
-private:
-    const Vector2d& from(const Spot& edge) const { return rings_[edge.contour][edge.index]; }
-    const Vector2d& to(const Spot& edge) const {
-        return rings_[edge.contour][(edge.index + 1) % rings_[edge.contour].size()];
-    }
-
-    template <typename Visit>
-    void visit_cells(const Spot& edge, const Visit& visit) const {
-        const Vector2d low = (from(edge).cwiseMin(to(edge)).array() - kCommonEdgeMm) / kCellMm;
-        const Vector2d high = (from(edge).cwiseMax(to(edge)).array() + kCommonEdgeMm) / kCellMm;
-        for (auto x = std::llround(std::floor(low.x())); static_cast<double>(x) <= high.x(); ++x) {
-            for (auto y = std::llround(std::floor(low.y())); static_cast<double>(y) <= high.y();
-                 ++y) {
-                visit((static_cast<std::uint64_t>(x) << 32U) ^
-                      (static_cast<std::uint64_t>(y) & 0xffffffffU));
-            }
-        }
-    }
-
-    bool face(const Spot& a, const Spot& b) const {
-        const Vector2d along = (to(a) - from(a)).normalized();
-        if (along.dot(to(b) - from(b)) >= 0.0) {
-            return false;
-        }
-        const double length = (to(a) - from(a)).norm();
-        const double t0 = along.dot(to(b) - from(a));
-        const double t1 = along.dot(from(b) - from(a));
-        const double low = std::max(0.0, t0);
-        const double high = std::min(length, t1);
-        if (high - low < kLeastShareMm) {
-            return false;
-        }
-        const double d0 = turn_of(along, to(b) - from(a));
-        const double slope = (turn_of(along, from(b) - from(a)) - d0) / (t1 - t0);
-        return std::abs(d0 + slope * (low - t0)) <= kCommonEdgeMm &&
-               std::abs(d0 + slope * (high - t0)) <= kCommonEdgeMm;
-    }
-
-    const std::vector<Ring>& rings_;
-    std::unordered_map<std::uint64_t, std::vector<Spot>> cells_;
-};
 
 // Corners of contours, those that fall together made one.
 class Nodes {
@@ -136,19 +50,19 @@ public:
         }
     }
 
-    std::size_t root(const Spot& corner) const {
+    std::size_t root(const RingSpot& corner) const {
         return root(first_[corner.contour] + corner.index);
     }
 
     // The corner lies on an edge of `contour`, at `place`.
-    void put_on(const Spot& corner, std::size_t contour, const Vector2d& place) {
+    void put_on(const RingSpot& corner, std::size_t contour, const Vector2d& place) {
         const std::size_t node = root(corner);
         contours_[node].push_back(contour);
         places_[node].push_back(place);
     }
 
     // Unless two corners of one contour would become one.
-    void unite(const Spot& a, const Spot& b) {
+    void unite(const RingSpot& a, const RingSpot& b) {
         const std::size_t one = root(a);
         const std::size_t other = root(b);
         const auto has = [&](std::size_t contour) {
@@ -190,7 +104,7 @@ private:
 // A corner of another contour on an edge.
 struct Inserted {
     double at_mm = 0.0;  // Along the edge.
-    Spot corner;
+    RingSpot corner;
 };
 
 class EdgeSharing {
@@ -212,12 +126,10 @@ private:
     using EdgeKey = std::pair<std::size_t, std::size_t>;
 
     void find_nodes() {
-        std::vector<std::pair<Spot, Spot>> pairs;
-        NearEdges(rings_).each_pair(
-            [&](const Spot& a, const Spot& b) { pairs.emplace_back(a, b); });
+        const auto pairs = facing_edges(rings_, {kCommonEdgeMm, kLeastShareMm});
         for (const auto& [a, b] : pairs) {
-            for (const Spot& one : {a, next(a)}) {
-                for (const Spot& other : {b, next(b)}) {
+            for (const RingSpot& one : {a, next(a)}) {
+                for (const RingSpot& other : {b, next(b)}) {
                     if ((corner(one) - corner(other)).norm() <= kSameNodeMm) {
                         nodes_.unite(one, other);
                     }
@@ -230,17 +142,17 @@ private:
         }
     }
 
-    Spot next(const Spot& edge) const {
+    RingSpot next(const RingSpot& edge) const {
         return {edge.contour, (edge.index + 1) % rings_[edge.contour].size()};
     }
-    const Vector2d& corner(const Spot& spot) const { return rings_[spot.contour][spot.index]; }
+    const Vector2d& corner(const RingSpot& spot) const { return rings_[spot.contour][spot.index]; }
 
     // Puts the corners of `other` that lie within `edge` on it.
-    void insert(const Spot& edge, const Spot& other) {
+    void insert(const RingSpot& edge, const RingSpot& other) {
         const Vector2d& from = corner(edge);
         const Vector2d way = corner(next(edge)) - from;
         const double length = way.norm();
-        for (const Spot& spot : {other, next(other)}) {
+        for (const RingSpot& spot : {other, next(other)}) {
             const double at = way.dot(corner(spot) - from) / length;
             const Vector2d foot = from + at / length * way;
             const std::size_t node = nodes_.root(spot);

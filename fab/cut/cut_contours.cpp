@@ -51,7 +51,10 @@ public:
             context_.check();
             choose_starts(i);
         }
-        for (const OrderedPath& place : find_order(paths_, wishes_.from, rules_, context_)) {
+        const FoundOrder order = find_order(paths_, wishes_.from, rules_, context_);
+        result_.facts.peak_heat = order.peak_heat;
+        result_.facts.peak_heat_shortest_way = order.peak_heat_shortest_way;
+        for (const OrderedPath& place : order.places) {
             result_.paths.push_back(finished(place));
         }
         return std::move(result_);

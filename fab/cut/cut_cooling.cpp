@@ -44,13 +44,12 @@ public:
         aim_ = (1.0 - task.heat) * peak();
     }
 
-    std::vector<OrderedPath> run() {
+    CooledOrder run() {
         constexpr double kNoHeat = 1e-3;
-        if (order_.size() < 2 || peak() < kNoHeat) {
-            return order_;
+        CooledOrder best{order_, peak(), peak()};
+        if (order_.size() < 2 || best.peak < kNoHeat) {
+            return best;
         }
-        std::vector<OrderedPath> best = order_;
-        double least = peak();
         aim_ = std::max(aim_, kNoHeat);
         price_mm_ = kFirstPrice * mean_way_mm_;
         for (int round = 0; round < kRounds && peak() > aim_; ++round) {
@@ -59,9 +58,9 @@ public:
                 improve(path);
             }
             refresh();
-            if (peak() < least) {
-                least = peak();
-                best = order_;
+            if (peak() < best.peak) {
+                best.peak = peak();
+                best.order = order_;
             }
             price_mm_ *= kPriceGrowth;
         }
@@ -282,9 +281,12 @@ private:
 
 }  // namespace
 
-std::vector<OrderedPath> cooled(const CoolingTask& task,
-                                std::vector<OrderedPath> order,
-                                const geometry::Context& context) {
+CooledOrder cooled(const CoolingTask& task,
+                   std::vector<OrderedPath> order,
+                   const geometry::Context& context) {
+    if (order.empty()) {
+        return {};
+    }
     return Cooling(task, std::move(order), context).run();
 }
 

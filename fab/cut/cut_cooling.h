@@ -26,9 +26,15 @@ struct CoolingTask {
     double heat = 0.5;
 };
 
+struct CooledOrder {
+    std::vector<OrderedPath> order;
+    double peak = 0.0;         // The largest heat index of all paths,
+    double peak_before = 0.0;  // and in the order that was given.
+};
+
 // Hot paths start elsewhere, run the other way round, or come earlier or later. Deterministic.
-std::vector<OrderedPath> cooled(const CoolingTask& task,
-                                std::vector<OrderedPath> order,
-                                const geometry::Context& context);
+CooledOrder cooled(const CoolingTask& task,
+                   std::vector<OrderedPath> order,
+                   const geometry::Context& context);
 
 }  // namespace leafcutter::fab

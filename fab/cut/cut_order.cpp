@@ -94,10 +94,10 @@ std::vector<double> start_places(const CutPath& path) {
     return places;
 }
 
-std::vector<OrderedPath> find_order(const std::vector<CutPath>& paths,
-                                    const Eigen::Vector2d& from,
-                                    const OrderRules& rules,
-                                    const geometry::Context& context) {
+FoundOrder find_order(const std::vector<CutPath>& paths,
+                      const Eigen::Vector2d& from,
+                      const OrderRules& rules,
+                      const geometry::Context& context) {
     TourProblem problem;
     problem.from = from;
     problem.before = rules.before;
@@ -114,19 +114,20 @@ std::vector<OrderedPath> find_order(const std::vector<CutPath>& paths,
         problem.places.push_back(place_of(paths[i], starts_mm[i]));
     }
     problem.evaluations = evaluations_for(paths, rules.evaluations_each);
-    std::vector<OrderedPath> order;
-    order.reserve(paths.size());
+    FoundOrder found;
+    found.places.reserve(paths.size());
     for (const TourStop& stop : shortest_tour(problem, context)) {
         const bool closed = is_closed(paths[stop.stop]);
-        order.push_back({stop.stop, closed ? starts_mm[stop.stop][stop.start] : 0.0,
-                         !closed && stop.start == 1});
+        found.places.push_back({stop.stop, closed ? starts_mm[stop.stop][stop.start] : 0.0,
+                                !closed && stop.start == 1});
     }
-    if (rules.heat > 0.0 && !paths.empty()) {
+    if (rules.heat > 0.0) {
         const HeatModel model(paths, rules.cooling);
         const CoolingTask task{model, from, problem.before, starts_mm, rules.heat};
-        return cooled(task, std::move(order), context);
+        CooledOrder cool = cooled(task, std::move(found.places), context);
+        found = {std::move(cool.order), cool.peak, cool.peak_before};
     }
-    return order;
+    return found;
 }
 
 CutPath as_ordered(CutPath path, const OrderedPath& place) {
@@ -140,7 +141,7 @@ std::vector<CutPath> order_paths(std::vector<CutPath> paths,
                                  const geometry::Context& context) {
     std::vector<CutPath> ordered;
     ordered.reserve(paths.size());
-    for (const OrderedPath& place : find_order(paths, from, rules, context)) {
+    for (const OrderedPath& place : find_order(paths, from, rules, context).places) {
         ordered.push_back(as_ordered(std::move(paths[place.path]), place));
     }
     return ordered;

@@ -35,13 +35,19 @@ struct OrderRules {
 // Points of a closed path that are worth starting at: its corners, and long edges parted.
 std::vector<double> start_places(const CutPath& path);
 
+struct FoundOrder {
+    std::vector<OrderedPath> places;
+    double peak_heat = 0.0;  // Of it, and of the shortest; 0 without OrderRules::heat.
+    double peak_heat_shortest_way = 0.0;
+};
+
 // Every path of `paths` exactly once; open ones may be reversed, closed ones may start anywhere and
 // run either way. All paths are of one operation. The tour begins at `from` and ends anywhere.
 // Deterministic.
-std::vector<OrderedPath> find_order(const std::vector<CutPath>& paths,
-                                    const Eigen::Vector2d& from,
-                                    const OrderRules& rules = {},
-                                    const geometry::Context& context = {});
+FoundOrder find_order(const std::vector<CutPath>& paths,
+                      const Eigen::Vector2d& from,
+                      const OrderRules& rules = {},
+                      const geometry::Context& context = {});
 
 CutPath as_ordered(CutPath path, const OrderedPath& place);
 

@@ -42,9 +42,10 @@ struct CutFacts {
     int lead_ins_shortened = 0;  // No room for more.
     int lead_ins_dropped = 0;    // No room at all.
     int tabs = 0;
-    int tabs_dropped = 0;          // No straight stretch without marks was long enough.
-    double common_edges_mm = 0.0;  // Cut once for two pieces.
-    double peak_heat = 0.0;        // HeatModel::peak (cut_heat.h) of the order chosen.
+    int tabs_dropped = 0;                 // No straight stretch without marks was long enough.
+    double common_edges_mm = 0.0;         // Cut once for two pieces.
+    double peak_heat = 0.0;               // HeatModel::peak (cut_heat.h) of the order chosen,
+    double peak_heat_shortest_way = 0.0;  // and of the one that heat was not asked about.
 };
 
 struct CutProgram {

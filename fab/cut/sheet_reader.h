@@ -15,6 +15,9 @@ struct BurntPiece {
     Ring contour;   // The way of the beam's centre round the piece.
     int times = 1;  // How often it was burnt: once for every pass.
 
+    // It shares edges with others. Waste that pieces enclose comes as such a contour too.
+    bool in_net = false;
+
     // Everything burnt inside, each line once: marks, text, slits, holes.
     std::vector<BurntSegment> marks;
 };
@@ -25,7 +28,8 @@ struct BurntSheet {
 };
 
 // A program ends with its cuts, so that the power and feed of the last burn tell cuts from marks.
-// Cuts that close and lie in no other one are outlines.
+// Cuts that close and lie in no other one are outlines, and so are the meshes of a net of cuts that
+// don't. Tabs are read across, lead-ins and over-cuts left out.
 BurntSheet read_sheet(std::string_view gcode);
 
 // True if `point` lies inside of the ring; undecided on its edge.

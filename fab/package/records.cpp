@@ -137,6 +137,29 @@ nlohmann::ordered_json nesting_record(const Layout& layout) {
             {"unplaced", layout.unplaced.size()}};
 }
 
+namespace {
+
+// Of the options that were asked for.
+void add_facts(const CutFacts& facts, const CutParams& wishes, json& record) {
+    if (wishes.lead_in_mm > 0.0) {
+        record["lead_ins"] = {{"whole", facts.lead_ins},
+                              {"shortened", facts.lead_ins_shortened},
+                              {"dropped", facts.lead_ins_dropped}};
+    }
+    if (wishes.tabs > 0) {
+        record["tabs"] = {{"left", facts.tabs}, {"dropped", facts.tabs_dropped}};
+    }
+    if (wishes.common_edges) {
+        record["common_edges_mm"] = facts.common_edges_mm;
+    }
+    if (wishes.heat > 0.0) {
+        record["peak_heat"] = facts.peak_heat;
+        record["peak_heat_shortest_way"] = facts.peak_heat_shortest_way;
+    }
+}
+
+}  // namespace
+
 nlohmann::ordered_json cut_record(const JobResult& job) {
     double burn = 0.0;
     double travel = 0.0;
@@ -151,6 +174,7 @@ nlohmann::ordered_json cut_record(const JobResult& job) {
                           {"burn_mm", program.burn_mm},
                           {"travel_mm", program.travel_mm},
                           {"estimated_s", program.estimated_s}});
+        add_facts(program.facts, job.params.cut, sheets.back());
     }
     return {{"burn_mm", burn},
             {"travel_mm", travel},

@@ -43,10 +43,9 @@ void cool_bands(benchmark::State& state) {
     const std::vector<CutPath> paths = test::shuffled_bands(static_cast<int>(state.range(0)), 1);
     OrderRules rules;
     rules.cooling.decay_s = static_cast<double>(state.range(1));
-    const HeatModel model(paths, rules.cooling);
-    const std::vector<OrderedPath> shortest = find_order(paths, kHome, rules);
+    const std::vector<OrderedPath> shortest = find_order(paths, kHome, rules).places;
     rules.heat = static_cast<double>(state.range(2)) / 100.0;
-    std::vector<OrderedPath> cool;
+    FoundOrder cool;
     for (auto _ : state) {
         cool = find_order(paths, kHome, rules);
     }
@@ -57,9 +56,9 @@ void cool_bands(benchmark::State& state) {
         }
         return travel_mm(run, kHome);
     };
-    state.counters["peak"] = model.peak(shortest, kHome);
-    state.counters["cool_peak"] = model.peak(cool, kHome);
-    state.counters["travel_ratio"] = travel(cool) / travel(shortest);
+    state.counters["peak"] = cool.peak_heat_shortest_way;
+    state.counters["cool_peak"] = cool.peak_heat;
+    state.counters["travel_ratio"] = travel(cool.places) / travel(shortest);
 }
 
 BENCHMARK(cool_bands)

@@ -151,6 +151,35 @@ TEST(Certificate, HoldsInEveryDialectAndForLinesAcross) {
     }
 }
 
+TEST(Certificate, HoldsWithTabsLeadInsAndOverCuts) {
+    JobResult job = woven();
+    job.params.cut.lead_in_mm = 2.0;
+    for (const double over_cut_mm : {0.0, 0.7, 25.0}) {
+        for (const int tabs : {0, 3}) {
+            job.params.cut.over_cut_mm = over_cut_mm;
+            job.params.cut.tabs = tabs;
+            for (const int passes : {1, 2}) {
+                job.weft.cut.passes = passes;
+                job.warp.cut.passes = passes;
+                const Certificate result = certify_cut(job, job);
+                EXPECT_TRUE(result.holds) << (result.faults.empty() ? "" : result.faults.front());
+                EXPECT_EQ(result.matched_by_id, static_cast<int>(job.pieces.size()));
+            }
+        }
+    }
+}
+
+TEST(Certificate, SeesAPieceCutTwiceInOnePlaceInSpiteOfTabs) {
+    JobResult job = woven();
+    job.params.cut.tabs = 2;
+    job.params.cut.lead_in_mm = 1.0;
+    JobResult cut = job;
+    cut.weft.cut.passes = 2;
+    const Certificate result = certify_cut(job, cut);
+    EXPECT_FALSE(result.holds);
+    EXPECT_EQ(result.duplicates, static_cast<int>(job.pieces.size()));
+}
+
 TEST(Certificate, FindsPiecesByShapeWithoutMarks) {
     FitParams fit;
     fit.labels = false;

@@ -14,6 +14,7 @@
 #include "fab/cut/motion.h"
 #include "fab/cut/path_walk.h"
 #include "fab/cut/segment_grid.h"
+#include "fab/cut/sheet_reader.h"
 #include "fab/cut/toolpath.h"
 #include "fab/export/formats.h"
 #include "fab/nest/random.h"
@@ -396,6 +397,31 @@ TEST_P(RandomSheets, ReadsBackFromGcodeAsPlanned) {
         EXPECT_LT(audit.largest_gap_mm, 1.5e-3);
         EXPECT_NEAR(audit.burnt_mm, audit.planned_mm, 0.05);
     }
+}
+
+TEST_P(RandomSheets, GiveEveryPieceBackFromGcodeAlone) {
+    const BurntSheet sheet = read_sheet(write_gcode(program_, {}, Dialect::Grbl));
+    SCOPED_TRACE(fmt::format("common {}, lead {}, tabs {} x {}, over {}", wishes_.common_edges,
+                             wishes_.lead_in_mm, wishes_.tabs, wishes_.tab_mm,
+                             wishes_.over_cut_mm.value_or(0.0)));
+    EXPECT_EQ(sheet.stray_lines, 0);
+    std::vector<int> found(contours_.size(), 0);
+    for (const BurntPiece& burnt : sheet.pieces) {
+        EXPECT_EQ(burnt.times, 1);
+        const double area = std::abs(signed_area(burnt.contour));
+        bool known = false;
+        for (std::size_t i = 0; i < contours_.size(); ++i) {
+            const Box box = bounds(burnt.contour);
+            const Box other = bounds(contours_[i]);
+            if (std::abs(area - signed_area(contours_[i])) < 0.01 * area + 3.0 &&
+                (box.low - other.low).norm() + (box.high - other.high).norm() < 0.15) {
+                ++found[i];
+                known = true;
+            }
+        }
+        EXPECT_TRUE(known || (burnt.in_net && burnt.marks.empty()));
+    }
+    EXPECT_EQ(std::count(found.begin(), found.end(), 1), std::ssize(found));
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomSheets, testing::Range(1, 61));

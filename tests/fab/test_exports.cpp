@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -195,6 +196,110 @@ TEST(Dxf, HasALayerPerOperationAndClosedPolylines) {
     EXPECT_EQ(closed, 2);
     EXPECT_EQ(open, 2);
     EXPECT_EQ(vertices, 3 + 2 + 3 + 3);
+}
+
+// A contour with two tabs and a lead-in, a closed one with an over-cut, a common edge.
+CutProgram program_with_options() {
+    CutProgram program;
+    program.size = {200.0, 100.0};
+    program.cut = {40.0, 900.0, 1};
+    CutPath tabbed{Operation::Cut,
+                   {{10.0, 10.0}, {60.0, 10.0}, {60.0, 30.0}, {10.0, 30.0}, {10.0, 10.0}},
+                   "W1.1"};
+    tabbed.tabs = {{20.0, 21.0}, {90.0, 91.0}};
+    tabbed.lead_in = Eigen::Vector2d(8.0, 8.0);
+    CutPath common{Operation::Cut, {{100.0, 10.0}, {100.0, 40.0}}, "W2.1"};
+    common.other_piece = "W3.1";
+    CutPath closed{
+        Operation::Cut, {{120.0, 10.0}, {160.0, 10.0}, {160.0, 30.0}, {120.0, 10.0}}, "W4.1"};
+    closed.over_cut_mm = 2.0;
+    program.paths = {tabbed, common, closed};
+    return program;
+}
+
+TEST(Gcode, LeadsInLeavesTabsDarkAndRunsPastTheStart) {
+    const std::string text = write_gcode(program_with_options(), {}, Dialect::Grbl);
+    EXPECT_NE(text.find("G0 X8 Y8 S0\nG1 X10 Y10 S400 F900\nG1 X30 Y10\nG0 X31 Y10 S0\n"
+                        "G1 X60 Y10 S400\nG1 X60 Y30\nG1 X40 Y30\nG0 X39 Y30 S0\n"
+                        "G1 X10 Y30 S400\nG1 X10 Y10\n"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("G1 X120 Y10\nG1 X122 Y10\n"), std::string::npos) << text;
+    const BurnAudit audit = audit_burn(program_with_options(), burnt_segments(text));
+    EXPECT_LT(audit.largest_gap_mm, 1e-3);
+    EXPECT_NEAR(audit.burnt_mm, audit.planned_mm, 1e-2);
+}
+
+TEST(Svg, DrawsTabsAsGapsAndLeadInsOnALayerOfTheirOwn) {
+    const std::string svg = write_svg(program_with_options());
+    EXPECT_NE(svg.find("d=\"M31,90 60,90 60,70 40,70M39,70 10,70 10,90 30,90\""), std::string::npos)
+        << svg;
+    EXPECT_NE(svg.find("<path id=\"lead-in-W1.1\" data-piece=\"W1.1\" d=\"M8,92 10,90\""),
+              std::string::npos);
+    EXPECT_NE(svg.find("d=\"M120,90 160,90 160,70Z\""), std::string::npos) << "no over-cut";
+    EXPECT_EQ(write_svg(sample_program()).find("lead-in"), std::string::npos);
+}
+
+// Other programs' eyes: 77 means that one is not there.
+int status_of(const std::string& command) {
+    return WEXITSTATUS(std::system(command.c_str()));
+}
+
+TEST(Svg, HasItsTrueSizeInInkscape) {
+    const test::TempDir dir;
+    const std::string file = (dir.path() / "sheet.svg").string();
+    std::ofstream(file, std::ios::binary) << write_svg(program_with_options());
+    const std::string out = (dir.path() / "sizes.txt").string();
+    if (status_of(fmt::format("command -v inkscape >/dev/null || exit 77; "
+                              "inkscape --query-all '{}' > '{}' 2>/dev/null",
+                              file, out)) == 77) {
+        GTEST_SKIP() << "no inkscape";
+    }
+    // Sizes in CSS pixels, 96 to an inch, with the stroke's 0.1 mm.
+    constexpr double kPixelsPerMm = 96.0 / 25.4;
+    std::ifstream lines(out);
+    bool found = false;
+    for (std::string line; std::getline(lines, line);) {
+        double x = 0.0;
+        double y = 0.0;
+        double width = 0.0;
+        double height = 0.0;
+        if (std::sscanf(line.c_str(), "cut-W1.1,%lf,%lf,%lf,%lf", &x, &y, &width, &height) == 4) {
+            found = true;
+            EXPECT_NEAR(width / kPixelsPerMm, 50.1, 0.02);
+            EXPECT_NEAR(height / kPixelsPerMm, 20.1, 0.02);
+            EXPECT_NEAR(x / kPixelsPerMm, 9.95, 0.02);
+            EXPECT_NEAR(y / kPixelsPerMm, 69.95, 0.02);
+        }
+    }
+    EXPECT_TRUE(found);
+}
+
+TEST(Dxf, OpensContoursAtTabsAndKeepsTheOthersClosed) {
+    const test::TempDir dir;
+    const std::string file = (dir.path() / "sheet.dxf").string();
+    std::ofstream(file, std::ios::binary) << write_dxf(program_with_options());
+    const std::string script = (dir.path() / "read.py").string();
+    std::ofstream(script)
+        << "import sys\n"
+           "import ezdxf\n"
+           "drawing = ezdxf.readfile(sys.argv[1])\n"
+           "audit = drawing.audit()\n"
+           "lines = list(drawing.modelspace())\n"
+           "kinds = sorted((line.dxf.layer, line.is_closed, len(line)) for line in lines)\n"
+           "ok = not audit.errors and not audit.fixes and kinds == [\n"
+           "    ('CUT', False, 2), ('CUT', False, 4), ('CUT', False, 4), ('CUT', True, 3),\n"
+           "    ('LEAD_IN', False, 2)]\n"
+           "print(kinds)\n"
+           "sys.exit(0 if ok else 1)\n";
+    const int status = status_of(
+        fmt::format("for p in python3 /usr/bin/python3; do $p -c 'import ezdxf' 2>/dev/null && "
+                    "exec $p '{}' '{}'; done; exit 77",
+                    script, file));
+    if (status == 77) {
+        GTEST_SKIP() << "no python3 with ezdxf";
+    }
+    EXPECT_EQ(status, 0);
 }
 
 // Another program's eyes: 77 means that it is not there.

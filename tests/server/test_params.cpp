@@ -48,6 +48,8 @@ TEST(Params, TakeEveryKeyOfTheDocumentation) {
         "material": {"warp": "felt-1", "weft": "card-300"},
         "nesting": {"time_s": 2.5, "spacing_mm": 0, "margin_mm": 3, "rotation": "0,90,180,270",
                     "seed": 9},
+        "cut": {"lead_in_mm": 2, "over_cut_mm": 0.5, "tabs": 2, "tab_mm": 0.8,
+                "common_edges": true, "heat": 0.5},
         "output": {"dialect": "marlin", "device": "big one", "machine": "co2-40w"}})"));
     EXPECT_FALSE(params.scale.longest_side_mm);
     EXPECT_EQ(params.foliation.mode, geometry::FoliationMode::Disk);
@@ -64,8 +66,34 @@ TEST(Params, TakeEveryKeyOfTheDocumentation) {
     EXPECT_EQ(params.fit.joint, fab::Joint::Slot);
     EXPECT_EQ(params.nesting.rotation, fab::Rotation::Quarter);
     EXPECT_EQ(params.nesting.seed, 9U);
+    EXPECT_EQ(params.cut.lead_in_mm, 2.0);
+    EXPECT_EQ(params.cut.over_cut_mm, 0.5);
+    EXPECT_EQ(params.cut.tabs, 2);
+    EXPECT_EQ(params.cut.tab_mm, 0.8);
+    EXPECT_TRUE(params.cut.common_edges);
+    EXPECT_EQ(params.cut.heat, 0.5);
     EXPECT_EQ(params.output.dialect, fab::Dialect::Marlin);
     EXPECT_EQ(params.output.machine, "co2-40w");
+}
+
+TEST(Params, CutsAreRefusedByFullPath) {
+    EXPECT_EQ(refusal(R"({"cut": {"lead_in_mm": -1}})"), "cut.lead_in_mm: must be >= 0");
+    EXPECT_EQ(refusal(R"({"cut": {"over_cut_mm": "some"}})"),
+              "cut.over_cut_mm: must be a number or auto");
+    EXPECT_EQ(refusal(R"({"cut": {"tabs": 1.5}})"), "cut.tabs: must be a whole number");
+    EXPECT_THAT(refusal(R"({"cut": {"tab_mm": 0}})"), StartsWith("cut.tab_mm: must be"));
+    EXPECT_THAT(refusal(R"({"cut": {"heat": 2}})"), StartsWith("cut.heat: must be"));
+    EXPECT_EQ(refusal(R"({"cut": {"common_edges": true}})"),
+              "cut.common_edges: needs pieces a kerf apart: set nesting.spacing_mm to 0");
+    EXPECT_EQ(refusal(R"({"cut": {"common_edges": true}, "nesting": {"spacing_mm": 0}})"), "");
+    EXPECT_EQ(refusal(R"({"cut": {"speed": 1}})"), "cut.speed: unknown key");
+}
+
+TEST(Params, LeaveTheOverCutToTheMaterial) {
+    const fab::JobParams params =
+        params_from_json(parse_params_text(R"({"cut": {"over_cut_mm": "auto"}})"));
+    EXPECT_FALSE(params.cut.over_cut_mm);
+    EXPECT_EQ(params_to_json(params)["cut"]["over_cut_mm"], "auto");
 }
 
 TEST(Params, ComeBackFromTheirJson) {
