@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "drivers/sim/grbl_machine.h"
+#include "drivers/sim/sim_machine.h"
 
 namespace leafcutter::drivers {
 
@@ -28,15 +29,19 @@ struct Fault {
 // Throws std::invalid_argument.
 Fault parse_fault(std::string_view text);
 
-class FaultyMachine {
+class FaultyMachine final : public SimMachine {
 public:
     explicit FaultyMachine(const GrblMachineOptions& options, std::optional<Fault> fault = {});
 
-    // As of GrblMachine.
-    std::string feed(std::string_view bytes);
-    std::string advance(double seconds);
+    std::string feed(std::string_view bytes) override;
+    std::string advance(double seconds) override;
+    bool at_rest() const override { return machine_.at_rest(); }
+    bool unplugged() const override { return unplugged_; }
+    double now_s() const override { return machine_.now_s(); }
+    double beam_power() const override { return machine_.beam_power(); }
+    const BeamLog& beam_log() const override { return machine_.beam_log(); }
+    BeamLog& beam_log() override { return machine_.beam_log(); }
 
-    bool unplugged() const { return unplugged_; }
     GrblMachine& machine() { return machine_; }
     const GrblMachine& machine() const { return machine_; }
 

@@ -15,6 +15,7 @@
 #include "drivers/sim/beam_log.h"
 #include "drivers/sim/gcode_interpreter.h"
 #include "drivers/sim/motion_queue.h"
+#include "drivers/sim/sim_machine.h"
 
 namespace leafcutter::drivers {
 
@@ -27,21 +28,23 @@ struct MarlinMachineOptions {
     std::optional<std::size_t> drop_line;  // This line is never heard.
 };
 
-class MarlinMachine {
+class MarlinMachine final : public SimMachine {
 public:
     static constexpr std::size_t kLines = 4;
 
     // Powers up: "start" is in the first answer.
     explicit MarlinMachine(const MarlinMachineOptions& options = {});
 
-    std::string feed(std::string_view bytes);
-    std::string advance(double seconds);
+    std::string feed(std::string_view bytes) override;
+    std::string advance(double seconds) override;
+    bool at_rest() const override { return queue_.empty() && actions_.empty() && motion_.empty(); }
+    double now_s() const override { return now_s_; }
+    double beam_power() const override;
+    const BeamLog& beam_log() const override { return log_; }
+    BeamLog& beam_log() override { return log_; }
 
     bool killed() const { return killed_; }
-    bool at_rest() const { return queue_.empty() && actions_.empty() && motion_.empty(); }
-    double beam_power() const;  // S put out at this moment.
     const Axes& position_mm() const { return motion_.position_mm(); }
-    const BeamLog& beam_log() const { return log_; }
     std::size_t overruns() const { return overruns_; }  // Lines that found every buffer taken.
 
 private:

@@ -1,9 +1,12 @@
 #include "drivers/sim/sim_transport.h"
 
+#include <algorithm>
 #include <charconv>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/sim/faulty_machine.h"
 #include "drivers/sim/sim_host.h"
 
 namespace leafcutter::drivers {
@@ -12,8 +15,9 @@ namespace {
 
 class SimTransport final : public Transport {
 public:
-    explicit SimTransport(const SimHostOptions& options)
-        : host_(open_pty_link(), options), link_(open_transport(host_.address())) {}
+    SimTransport(std::unique_ptr<SimMachine> machine, const SimHostOptions& options)
+        : host_(open_pty_link(), std::move(machine), options),
+          link_(open_transport(host_.address())) {}
 
     std::string read_some(std::chrono::milliseconds timeout) override {
         return link_->read_some(timeout);
@@ -28,6 +32,12 @@ private:
     std::unique_ptr<Transport> link_;  // Closed before the machine is switched off.
 };
 
+struct SimGrblOptions {
+    SimHostOptions host;
+    GrblMachineOptions machine;
+    std::optional<Fault> fault;
+};
+
 double read_number(std::string_view key, std::string_view value) {
     double number = 0.0;
     const char* const last = value.data() + value.size();
@@ -39,11 +49,11 @@ double read_number(std::string_view key, std::string_view value) {
     return number;
 }
 
-void set_option(std::string_view key, std::string_view value, SimHostOptions& options) {
+void set_option(std::string_view key, std::string_view value, SimGrblOptions& options) {
     if (key == "burn") {
-        options.burn_path = value;
+        options.host.burn_path = value;
     } else if (key == "speed") {
-        options.speed = read_number(key, value);
+        options.host.speed = read_number(key, value);
     } else if (key == "width") {
         options.machine.bed_width_mm = read_number(key, value);
     } else if (key == "height") {
@@ -59,7 +69,7 @@ void set_option(std::string_view key, std::string_view value, SimHostOptions& op
 }  // namespace
 
 std::unique_ptr<Transport> open_simulated_grbl(std::string_view query) {
-    SimHostOptions options;
+    SimGrblOptions options;
     while (!query.empty()) {
         const std::size_t end = std::min(query.find('&'), query.size());
         const std::string_view pair = query.substr(0, end);
@@ -67,7 +77,8 @@ std::unique_ptr<Transport> open_simulated_grbl(std::string_view query) {
         const std::size_t equals = std::min(pair.find('='), pair.size());
         set_option(pair.substr(0, equals), pair.substr(std::min(equals + 1, pair.size())), options);
     }
-    return std::make_unique<SimTransport>(options);
+    return std::make_unique<SimTransport>(
+        std::make_unique<FaultyMachine>(options.machine, options.fault), options.host);
 }
 
 }  // namespace leafcutter::drivers

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -12,7 +11,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "drivers/sim/lihuiyu_host.h"
+#include "drivers/sim/faulty_machine.h"
+#include "drivers/sim/lihuiyu_machine.h"
 #include "drivers/sim/sim_host.h"
 #include "server/cli/command.h"
 #include "server/cli/interrupt.h"
@@ -27,7 +27,7 @@ struct SimulateOptions {
     std::optional<unsigned short> tcp_port;
     std::string burn_path;
     std::string fault;
-    std::optional<double> speed;
+    double speed = 1.0;
     std::optional<double> width_mm;
     std::optional<double> height_mm;
     std::string board = "M2";
@@ -38,38 +38,19 @@ std::unique_ptr<drivers::SimLink> open_link(const SimulateOptions& options) {
                             : drivers::open_pty_link(options.pty);
 }
 
-void run_until_interrupted(const InterruptWatch& interrupt,
-                           const std::string& uri,
-                           const std::function<void()>& look) {
-    std::printf("%s\n", uri.c_str());
-    std::fflush(stdout);
-    while (!interrupt.token().stop_requested()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        look();
-    }
-}
-
-void simulate_grbl(const SimulateOptions& options) {
-    drivers::SimHostOptions host_options;
-    host_options.burn_path = options.burn_path;
-    host_options.speed = options.speed.value_or(host_options.speed);
-    drivers::GrblMachineOptions& machine = host_options.machine;
+std::unique_ptr<drivers::SimMachine> make_grbl(const SimulateOptions& options) {
+    drivers::GrblMachineOptions machine;
     machine.bed_width_mm = options.width_mm.value_or(machine.bed_width_mm);
     machine.bed_height_mm = options.height_mm.value_or(machine.bed_height_mm);
+    std::optional<drivers::Fault> fault;
     if (!options.fault.empty()) {
-        host_options.fault = drivers::parse_fault(options.fault);
+        fault = drivers::parse_fault(options.fault);
     }
-    const InterruptWatch interrupt;  // Before the machine's thread.
-    const drivers::SimHost host(open_link(options), host_options);
-    run_until_interrupted(interrupt, fmt::format("grbl:{}", host.address()), [] {});
+    return std::make_unique<drivers::FaultyMachine>(machine, fault);
 }
 
-// What the machine complains about goes to stderr, a line each.
-void simulate_lihuiyu(const SimulateOptions& options) {
-    drivers::SimLihuiyuOptions host_options;
-    host_options.burn_path = options.burn_path;
-    host_options.speed = options.speed.value_or(host_options.speed);
-    drivers::LihuiyuMachineOptions& machine = host_options.machine;
+std::unique_ptr<drivers::SimMachine> make_lihuiyu(const SimulateOptions& options) {
+    drivers::LihuiyuMachineOptions machine;
     machine.speed.board = drivers::parse_lihuiyu_board(options.board);
     machine.bed.width_mm = options.width_mm.value_or(machine.bed.width_mm);
     machine.bed.height_mm = options.height_mm.value_or(machine.bed.height_mm);
@@ -77,24 +58,37 @@ void simulate_lihuiyu(const SimulateOptions& options) {
     if (!options.fault.empty()) {
         machine.fault = drivers::parse_lihuiyu_fault(options.fault);
     }
-    const InterruptWatch interrupt;  // Before the machine's thread.
-    drivers::LihuiyuHost host(open_link(options), host_options);
-    run_until_interrupted(interrupt, fmt::format("lihuiyu:{}", host.address()), [&host] {
+    return std::make_unique<drivers::LihuiyuMachine>(machine);
+}
+
+std::unique_ptr<drivers::SimMachine> make_machine(const SimulateOptions& options) {
+    if (options.machine == "grbl") {
+        return make_grbl(options);
+    }
+    if (options.machine == "lihuiyu") {
+        return make_lihuiyu(options);
+    }
+    throw UsageError(fmt::format("simulate: \"{}\": must be grbl or lihuiyu", options.machine));
+}
+
+// What the machine complains about goes to stderr, a line each.
+void run_until_interrupted(drivers::SimHost& host, const std::stop_token& interrupt) {
+    while (!interrupt.stop_requested()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
         for (const drivers::Violation& violation : host.take_violations()) {
             std::fprintf(stderr, "at %.3f s: %s\n", violation.t_s, violation.text.c_str());
         }
-    });
+    }
 }
 
 void simulate(const SimulateOptions& options) {
     try {
-        if (options.machine == "grbl") {
-            simulate_grbl(options);
-        } else if (options.machine == "lihuiyu") {
-            simulate_lihuiyu(options);
-        } else {
-            throw UsageError("simulate: \"" + options.machine + "\": must be grbl or lihuiyu");
-        }
+        const InterruptWatch interrupt;  // Before the machine's thread.
+        drivers::SimHost host(open_link(options), make_machine(options),
+                              {options.speed, options.burn_path});
+        std::printf("%s:%s\n", options.machine.c_str(), host.address().c_str());
+        std::fflush(stdout);
+        run_until_interrupted(host, interrupt.token());
     } catch (const std::invalid_argument& error) {
         throw UsageError(error.what());
     }
