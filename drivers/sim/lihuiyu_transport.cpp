@@ -51,6 +51,9 @@ public:
         return bytes;
     }
 
+    // The machine waits for questions.
+    void rest(milliseconds time) override { std::this_thread::sleep_for(time); }
+
     std::string description() const override { return "simulated Lihuiyu board"; }
 
 private:

@@ -220,6 +220,7 @@ public:
     std::string bulk_read(std::size_t /*most*/, milliseconds /*timeout*/) override {
         return std::string("\xFF\xCE\x6F\x08\x13\0", 6);
     }
+    void rest(milliseconds /*time*/) override {}
     std::string description() const override { return "scripted"; }
 
 private:
@@ -256,7 +257,7 @@ TEST(Ch341Transport, GivesUpATornPacket) {
 
 TEST(UsbPipe, SaysThatNoBoardIsThere) {
     try {
-        open_usb_pipe({.vendor = 0x1A86, .product = 0x5512, .bus = 254, .address = 254});
+        open_usb_pipe({.vendor = 0x1A86, .product = 0x5512, .bus = 254, .address = 254, .port = {}});
         FAIL() << "there is none at bus 254";
     } catch (const LinkLost& lost) {
         EXPECT_THAT(lost.what(), HasSubstr("usb 1a86:5512 bus 254 address 254"));
