@@ -37,6 +37,7 @@ public:
     std::string advance(double seconds) override;
     bool at_rest() const override { return machine_.at_rest(); }
     bool unplugged() const override { return unplugged_; }
+    void power_cycle() override { machine_.power_cycle(); }
     double now_s() const override { return machine_.now_s(); }
     double beam_power() const override { return machine_.beam_power(); }
     const BeamLog& beam_log() const override { return machine_.beam_log(); }

@@ -192,6 +192,16 @@ bool LihuiyuMachine::take_realtime(std::string_view payload) {
     return false;
 }
 
+// The head stays where it is, and nobody knows where that is.
+void LihuiyuMachine::power_cycle() {
+    stop();
+    interpreter_.reset();
+    wire_.clear();
+    out_.clear();
+    last_was_bad_ = false;
+    finished_until_s_ = busy_until_s_ = now_s_;
+}
+
 void LihuiyuMachine::stop() {
     if (motion_) {
         log_burn();

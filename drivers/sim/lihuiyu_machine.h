@@ -63,6 +63,7 @@ public:
     // isn't to wait.
     std::string hurry() override;
 
+    void power_cycle() override;
     bool waits_for_questions() const override { return true; }
     bool at_rest() const override;
     bool unplugged() const override { return unplugged_; }

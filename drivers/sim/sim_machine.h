@@ -34,6 +34,9 @@ public:
     // Nothing moves, waits or is left to do.
     virtual bool at_rest() const = 0;
 
+    // As if the supply had failed for a moment.
+    virtual void power_cycle() = 0;
+
     virtual bool unplugged() const { return false; }
     virtual double now_s() const = 0;
     virtual double beam_power() const = 0;  // Put out at this moment; 0: off.

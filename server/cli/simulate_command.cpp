@@ -1,4 +1,5 @@
-// `leafcutter simulate grbl|lihuiyu`: a simulated machine that any program can drive, until Ctrl-C.
+// `leafcutter simulate grbl|marlin|smoothie|lihuiyu`: a simulated machine that any program can
+// drive, until Ctrl-C.
 
 #include <chrono>
 #include <cstdio>
@@ -12,8 +13,11 @@
 #include <fmt/format.h>
 
 #include "drivers/sim/faulty_machine.h"
+#include "drivers/sim/faulty_wire.h"
 #include "drivers/sim/lihuiyu_machine.h"
+#include "drivers/sim/marlin_machine.h"
 #include "drivers/sim/sim_host.h"
+#include "drivers/sim/smoothie_machine.h"
 #include "server/cli/command.h"
 #include "server/cli/interrupt.h"
 
@@ -61,6 +65,15 @@ std::unique_ptr<drivers::SimMachine> make_lihuiyu(const SimulateOptions& options
     return std::make_unique<drivers::LihuiyuMachine>(machine);
 }
 
+std::unique_ptr<drivers::SimMachine> behind_wire(std::unique_ptr<drivers::SimMachine> machine,
+                                                 const SimulateOptions& options) {
+    if (options.fault.empty()) {
+        return machine;
+    }
+    return std::make_unique<drivers::FaultyWire>(std::move(machine),
+                                                 drivers::parse_wire_fault(options.fault));
+}
+
 std::unique_ptr<drivers::SimMachine> make_machine(const SimulateOptions& options) {
     if (options.machine == "grbl") {
         return make_grbl(options);
@@ -68,7 +81,14 @@ std::unique_ptr<drivers::SimMachine> make_machine(const SimulateOptions& options
     if (options.machine == "lihuiyu") {
         return make_lihuiyu(options);
     }
-    throw UsageError(fmt::format("simulate: \"{}\": must be grbl or lihuiyu", options.machine));
+    if (options.machine == "marlin") {
+        return behind_wire(std::make_unique<drivers::MarlinMachine>(), options);
+    }
+    if (options.machine == "smoothie") {
+        return behind_wire(std::make_unique<drivers::SmoothieMachine>(), options);
+    }
+    throw UsageError(fmt::format("simulate: \"{}\": must be grbl, marlin, smoothie or lihuiyu",
+                                 options.machine));
 }
 
 // What the machine complains about goes to stderr, a line each.
@@ -100,7 +120,8 @@ void add_simulate_command(CLI::App& app, const CommonOptions& /*common*/) {
     CLI::App* command = app.add_subcommand(
         "simulate", "A simulated machine that any program can drive; prints its device URI");
     const auto options = std::make_shared<SimulateOptions>();  // Lives as long as the callback.
-    command->add_option("machine", options->machine, "grbl or lihuiyu")->required();
+    command->add_option("machine", options->machine, "grbl, marlin, smoothie or lihuiyu")
+        ->required();
     CLI::Option* pty =
         command->add_option("--pty", options->pty, "Path of a symbolic link to its serial port");
     command->add_option("--tcp", options->tcp_port, "Port on the loopback; 0 picks a free one")
@@ -110,7 +131,10 @@ void add_simulate_command(CLI::App& app, const CommonOptions& /*common*/) {
                         "Simulated seconds per second; 0: as fast as possible");
     command->add_option(
         "--fault", options->fault,
-        "grbl: drop-ok:N corrupt-ok:N stall:N alarm:N reset:N unplug:N, at the N-th line; lihuiyu: "
+        "grbl: drop-ok:N corrupt-ok:N stall:N alarm:N reset:N unplug:N, at the N-th line; marlin, "
+        "smoothie: "
+        "flip-bit:N drop-line:N drop-byte:N drop-ok:N garble-ok:N double-ok:N stall:N reset:N "
+        "unplug:N; lihuiyu: "
         "crc:N crc-always:N busy:N stall:N mute:N power:N lose:N unplug:N, at the N-th packet");
     command->add_option("--width", options->width_mm, "Bed width in mm");
     command->add_option("--height", options->height_mm, "Bed height in mm");
