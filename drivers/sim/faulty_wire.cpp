@@ -55,7 +55,7 @@ std::string FaultyWire::feed(std::string_view bytes) {
             answer += machine_->feed(disturb_line(std::exchange(to_machine_, {})));
         }
     }
-    const bool whole = to_machine_.find_first_of("N") == std::string::npos;
+    const bool whole = to_machine_.find('N') == std::string::npos;
     if (whole && !to_machine_.empty()) {
         answer += machine_->feed(std::exchange(to_machine_, {}));
     }

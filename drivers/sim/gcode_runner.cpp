@@ -9,7 +9,7 @@ namespace leafcutter::drivers {
 namespace {
 
 constexpr MotionLimits kLimits{{200.0, 200.0, 10.0}, {1000.0, 1000.0, 100.0}, 0.01};
-const GcodeInterpreter::Rules kRules{true, 0.01, {80.0, 80.0, 80.0}};
+constexpr GcodeInterpreter::Rules kRules{true, 0.01, {80.0, 80.0, 80.0}};
 constexpr double kHomeMmPerS = 50.0;
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "drivers/lihuiyu/address.h"
 #include "drivers/lihuiyu/ch341_transport.h"
+#include "drivers/lihuiyu/egv.h"
 #include "drivers/lihuiyu/session.h"
 #include "drivers/session_device.h"
 #include "drivers/sim/lihuiyu_transport.h"
@@ -192,6 +193,22 @@ TEST(LihuiyuDevice, TakesAnEgvFile) {
     EXPECT_NEAR(burnt.front().y0_mm, 210.0 - 787 * 0.0254, 1e-6);
 }
 
+TEST(LihuiyuDevice, TakesTheEgvFileOfAProgramForTheProgram) {
+    const EncoderOptions options;
+    const std::string egv = convert_to_egv(squares(3), options);
+    const std::vector<CutMove> direct = read_program_moves(squares(3), options);
+    double lit = 0.0;
+    CutMove before;
+    for (const CutMove& move : read_program_moves(egv, options)) {
+        lit += move.beam ? std::hypot(move.x_mm - before.x_mm, move.y_mm - before.y_mm) : 0.0;
+        before = move;
+    }
+    EXPECT_NEAR(lit, 3 * 16.0, 12 * 0.0254);
+    EXPECT_NEAR(before.x_mm, direct.back().x_mm, 0.0254);
+    EXPECT_NEAR(before.y_mm, direct.back().y_mm, 0.0254);
+    EXPECT_THROW(convert_to_egv("M4\nG1 X1000 Y0 S5 F600\n", options), ProgramRefused);
+}
+
 // A USB device that takes transfers as it is told to.
 class ScriptedUsb final : public UsbPipe {
 public:
@@ -257,7 +274,8 @@ TEST(Ch341Transport, GivesUpATornPacket) {
 
 TEST(UsbPipe, SaysThatNoBoardIsThere) {
     try {
-        open_usb_pipe({.vendor = 0x1A86, .product = 0x5512, .bus = 254, .address = 254, .port = {}});
+        open_usb_pipe(
+            {.vendor = 0x1A86, .product = 0x5512, .bus = 254, .address = 254, .port = {}});
         FAIL() << "there is none at bus 254";
     } catch (const LinkLost& lost) {
         EXPECT_THAT(lost.what(), HasSubstr("usb 1a86:5512 bus 254 address 254"));
