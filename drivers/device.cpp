@@ -78,6 +78,16 @@ std::unique_ptr<Session> smoothie_session(Session::Time now) {
 
 }  // namespace
 
+bool is_device_uri(std::string_view uri) {
+    constexpr std::string_view kLinked[] = {"grbl:", "marlin:", "smoothie:", "lihuiyu:"};
+    constexpr std::string_view kSimulated[] = {"sim:grbl", "sim:marlin", "sim:smoothie",
+                                               "sim:lihuiyu"};
+    return std::any_of(std::begin(kLinked), std::end(kLinked),
+                       [uri](std::string_view kind) { return starts_with(uri, kind); }) ||
+           std::any_of(std::begin(kSimulated), std::end(kSimulated),
+                       [uri](std::string_view kind) { return query_of(uri, kind).has_value(); });
+}
+
 std::unique_ptr<Device> open_device(std::string_view uri) {
     constexpr std::string_view kGrbl = "grbl:";
     if (starts_with(uri, kGrbl)) {

@@ -115,4 +115,7 @@ public:
 // keeps its beam log. Throws LinkLost, or std::invalid_argument for a URI it can't read.
 std::unique_ptr<Device> open_device(std::string_view uri);
 
+// Whether a URI begins like one that open_device() takes; opens nothing.
+bool is_device_uri(std::string_view uri);
+
 }  // namespace leafcutter::drivers
