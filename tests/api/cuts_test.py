@@ -356,8 +356,7 @@ class Machines(CutsOf):
         self.assert_problem(self.ask("POST", again + "/start", consent), 409, "device-not-ready")
         self.assertEqual(board.command("home")[0], 202)
         board.until("idle")
-        self.fire(again)
-        self.reaches(again, "done", seconds=60)
+        self.burning(board, again)
 
     def test_marlin_and_smoothieware_cut_a_sheet_each(self):
         for kind in ("marlin", "smoothie"):
