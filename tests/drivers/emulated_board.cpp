@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstring>
 #include <stdexcept>
+#include <sys/ioctl.h>
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 
 namespace leafcutter::drivers {
 
