@@ -42,6 +42,8 @@ struct DeviceStatus {
     int alarm_code = 0;                                  // 0: none.
     std::string message;                                 // Last alarm or error, with its meaning.
     std::string firmware;
+    std::size_t reports = 0;         // Measured positions received so far; 0: it reports none.
+    std::size_t planner_blocks = 0;  // Moves it holds unmoved at most; 0: not known.
 };
 
 enum class JobOutcome { Running, Done, Aborted, Failed, LinkLost };
@@ -78,6 +80,16 @@ public:
     using Refused::Refused;
 };
 
+// Looks over a running program: called by the thread of run_once() before more of it is sent, and
+// may not wait.
+class JobWatch {
+public:
+    virtual ~JobWatch() = default;
+
+    // Returns how many of the program's lines may have been sent by now.
+    virtual std::size_t lines_allowed(const JobProgress& progress, const DeviceStatus& status) = 0;
+};
+
 class Device {
 public:
     virtual ~Device() = default;
@@ -103,6 +115,9 @@ public:
     // Every line received, for a console view. Set before the first run_once(); called by its
     // thread.
     std::function<void(std::string_view line)> on_line;
+
+    // Set by the thread of run_once(), before start(); without one, every line is sent.
+    std::shared_ptr<JobWatch> watch;
 
     // Works for at most `slice`: reads, feeds the stream, polls status. Throws LinkLost once when
     // the link is gone; the device is Disconnected from then on.

@@ -10,8 +10,9 @@ bool is_digit(char letter) {
     return letter >= '0' && letter <= '9';
 }
 
-// A plain decimal number: Grbl knows no exponent. Advances `at` behind it.
-std::optional<double> read_number(std::string_view text, std::size_t& at) {
+}  // namespace
+
+std::optional<double> read_decimal(std::string_view text, std::size_t& at) {
     double sign = 1.0;
     if (at < text.size() && (text[at] == '-' || text[at] == '+')) {
         sign = text[at] == '-' ? -1.0 : 1.0;
@@ -37,8 +38,6 @@ std::optional<double> read_number(std::string_view text, std::size_t& at) {
     }
     return sign * value / scale;
 }
-
-}  // namespace
 
 std::string strip_gcode(std::string_view line) {
     std::string stripped;
@@ -68,12 +67,23 @@ GcodeWords split_words(std::string_view stripped) {
             return result;
         }
         ++at;
-        const std::optional<double> value = read_number(stripped, at);
+        const std::optional<double> value = read_decimal(stripped, at);
         if (!value) {
             result.fault = WordFault::BadNumber;
             return result;
         }
         result.words.push_back({letter, *value});
+    }
+    return result;
+}
+
+std::string without_inline_word(std::string_view stripped) {
+    std::string result(stripped);
+    const std::string_view start = stripped.substr(0, 2);
+    const std::size_t at = result.find('I');
+    if ((start == "M3" || start == "M4" || start == "M5") && at != std::string::npos) {
+        const std::size_t end = result.find_first_not_of("0123456789", at + 1);
+        result.erase(at, end == std::string::npos ? end : end - at);
     }
     return result;
 }

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +21,9 @@ std::string strip_gcode(std::string_view line);
 
 enum class WordFault { LetterExpected, BadNumber };
 
+// A plain decimal number at `at`, which moves behind it: Grbl knows no exponent.
+std::optional<double> read_decimal(std::string_view text, std::size_t& at);
+
 struct GcodeWords {
     std::vector<GcodeWord> words;
     std::optional<WordFault> fault;  // Set: `words` ends before the faulty one.
@@ -27,5 +31,9 @@ struct GcodeWords {
 
 // Takes a stripped line.
 GcodeWords split_words(std::string_view stripped);
+
+// A stripped line without the I of Marlin's M3, M4, M5: inline power, which goes with the moves as
+// that of the other families always does.
+std::string without_inline_word(std::string_view stripped);
 
 }  // namespace leafcutter::drivers

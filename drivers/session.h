@@ -4,6 +4,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +58,15 @@ public:
 
     virtual const DeviceStatus& status() const = 0;
     virtual const JobProgress& progress() const = 0;
+
+    // Of a program's lines, no more than so many are sent.
+    void allow_lines(std::size_t lines) { lines_allowed_ = lines; }
+
+protected:
+    bool may_send_line(std::size_t lines_sent) const { return lines_sent < lines_allowed_; }
+
+private:
+    std::size_t lines_allowed_ = std::numeric_limits<std::size_t>::max();
 };
 
 }  // namespace leafcutter::drivers

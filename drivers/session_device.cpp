@@ -1,6 +1,7 @@
 #include "drivers/session_device.h"
 
 #include <algorithm>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -80,6 +81,7 @@ JobProgress SessionDevice::progress() const {
 
 void SessionDevice::start(std::string program) {
     const std::lock_guard lock(mutex_);
+    session_->allow_lines(watch ? 0 : std::numeric_limits<std::size_t>::max());
     session_->start(program);
 }
 
@@ -146,6 +148,9 @@ void SessionDevice::turn(milliseconds wait) {
     {
         const std::lock_guard lock(mutex_);
         session_->receive(bytes, clock_());
+        if (watch) {
+            session_->allow_lines(watch->lines_allowed(session_->progress(), session_->status()));
+        }
         session_->tick(clock_());
         lines = session_->take_lines();
     }

@@ -103,6 +103,15 @@ struct NestingParams {
     std::uint32_t seed = 1;
 };
 
+struct CutParams {
+    double lead_in_mm = 0.0;            // Way in the waste before a contour, where there is room.
+    std::optional<double> over_cut_mm;  // Past the start of a contour; else as the material asks.
+    int tabs = 0;                       // Bridges that hold each piece in its sheet,
+    double tab_mm = 0.5;                // each so long.
+    bool common_edges = false;          // Edges of two pieces a kerf apart are cut once.
+    double heat = 0.0;  // 0: shortest way; to 1: less heat in one place for longer ways.
+};
+
 enum class Dialect { Grbl, Marlin, Smoothie };
 enum class Paper { A4, A3, Letter };
 
@@ -122,6 +131,7 @@ struct JobParams {
     FitParams fit;
     MaterialParams material;
     NestingParams nesting;
+    CutParams cut;
     OutputParams output;
 };
 

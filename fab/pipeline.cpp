@@ -357,8 +357,8 @@ private:
     void plan(const Context& context) {
         for (const Sheet& sheet : result_.layout.sheets) {
             const Material& material = sheet.family == "warp" ? result_.warp : result_.weft;
-            CutProgram program =
-                plan_sheet(sheet, result_.pieces, material, options_.machine, context);
+            CutProgram program = plan_sheet(
+                sheet, result_.pieces, {material, options_.machine, result_.params.cut}, context);
             program.job = result_.input.file;
             result_.programs.push_back(std::move(program));
             context.report(kToolpath.name, static_cast<double>(result_.programs.size()) /

@@ -86,7 +86,8 @@ Layout on_sheets(const JobResult& job, const geometry::Context& context) {
 void plan_programs(JobResult& job, const geometry::Context& context) {
     for (const Sheet& sheet : job.layout.sheets) {
         const Material& material = sheet.material == job.weft.id ? job.weft : job.warp;
-        CutProgram program = plan_sheet(sheet, job.pieces, material, job.machine, context);
+        CutProgram program =
+            plan_sheet(sheet, job.pieces, {material, job.machine, job.params.cut}, context);
         program.job = job.input.file;
         job.programs.push_back(std::move(program));
     }

@@ -10,8 +10,8 @@
 
 namespace leafcutter::server {
 
-std::vector<fab::BurntSegment> read_burn_log(std::string_view text) {
-    std::vector<fab::BurntSegment> burnt;
+std::vector<drivers::BurntPiece> read_burnt_pieces(std::string_view text) {
+    std::vector<drivers::BurntPiece> pieces;
     int number = 0;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size());
@@ -23,14 +23,27 @@ std::vector<fab::BurntSegment> read_burn_log(std::string_view text) {
         }
         try {
             const auto record = nlohmann::json::parse(line);
-            if (record.at("s").get<double>() > 0.0) {
-                burnt.push_back({{record.at("x0").get<double>(), record.at("y0").get<double>()},
-                                 {record.at("x1").get<double>(), record.at("y1").get<double>()}});
+            drivers::BurntPiece piece;
+            piece.s = record.at("s").get<double>();
+            if (piece.s > 0.0) {
+                piece.x0_mm = record.at("x0").get<double>();
+                piece.y0_mm = record.at("y0").get<double>();
+                piece.x1_mm = record.at("x1").get<double>();
+                piece.y1_mm = record.at("y1").get<double>();
+                pieces.push_back(piece);
             }
         } catch (const nlohmann::json::exception& error) {
             throw geometry::Error(geometry::ErrorKind::BadFile, "bad-burn-log",
                                   fmt::format("burn log, line {}: {}", number, error.what()));
         }
+    }
+    return pieces;
+}
+
+std::vector<fab::BurntSegment> read_burn_log(std::string_view text) {
+    std::vector<fab::BurntSegment> burnt;
+    for (const drivers::BurntPiece& piece : read_burnt_pieces(text)) {
+        burnt.push_back({{piece.x0_mm, piece.y0_mm}, {piece.x1_mm, piece.y1_mm}});
     }
     return burnt;
 }

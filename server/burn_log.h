@@ -7,11 +7,15 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/sim/beam_log.h"
 #include "fab/cut/audit.h"
 
 namespace leafcutter::server {
 
-// Throws geometry::Error(BadFile) naming the line.
+// Places and S words of the lit pieces. Throws geometry::Error(BadFile) naming the line.
+std::vector<drivers::BurntPiece> read_burnt_pieces(std::string_view text);
+
+// The same. Throws geometry::Error(BadFile) naming the line.
 std::vector<fab::BurntSegment> read_burn_log(std::string_view text);
 
 // Parts a log of several sheets, cut one after the other, where the burnt length of each plan is

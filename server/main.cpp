@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
     add_simulate_command(app, common);
     add_devices_command(app, common);
     add_audit_command(app, common);
+    add_burn_picture_command(app, common);
     add_nest_command(app, common);
     add_materials_command(app, common);
     add_recut_command(app, common);

@@ -146,6 +146,22 @@ void read_nesting(ObjectReader& reader, fab::NestingParams& nesting) {
     nesting.seed = static_cast<std::uint32_t>(seed);
 }
 
+void read_cut(ObjectReader& reader, fab::CutParams& cut) {
+    reader.number("lead_in_mm", cut.lead_in_mm, {0.0, 20.0});
+    if (const json* value = reader.get("over_cut_mm"); value != nullptr && value->is_string()) {
+        if (*value != "auto") {
+            refuse_param(reader.path_of("over_cut_mm"), "must be a number or auto");
+        }
+        cut.over_cut_mm.reset();
+    } else if (value != nullptr) {
+        cut.over_cut_mm = read_number(*value, reader.path_of("over_cut_mm"), {0.0, 20.0});
+    }
+    reader.integer("tabs", cut.tabs, {0.0, 100.0});
+    reader.number("tab_mm", cut.tab_mm, {0.05, 5.0});
+    reader.boolean("common_edges", cut.common_edges);
+    reader.number("heat", cut.heat, {0.0, 1.0});
+}
+
 void read_output(ObjectReader& reader, fab::OutputParams& output) {
     read_choice(reader, "dialect", output.dialect, kDialects);
     reader.text("device", output.device);
@@ -166,8 +182,12 @@ JobParams params_from_json(const json& params) {
     reader.object("fit", [&](ObjectReader& part) { read_fit(part, result.fit); });
     reader.object("material", [&](ObjectReader& part) { read_material(part, result.material); });
     reader.object("nesting", [&](ObjectReader& part) { read_nesting(part, result.nesting); });
+    reader.object("cut", [&](ObjectReader& part) { read_cut(part, result.cut); });
     reader.object("output", [&](ObjectReader& part) { read_output(part, result.output); });
     reader.finish();
+    if (result.cut.common_edges && result.nesting.spacing_mm != 0.0) {
+        refuse_param("cut.common_edges", "needs pieces a kerf apart: set nesting.spacing_mm to 0");
+    }
     return result;
 }
 

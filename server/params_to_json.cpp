@@ -121,6 +121,13 @@ json params_to_json(const fab::JobParams& params) {
                          {"margin_mm", params.nesting.margin_mm},
                          {"rotation", name_of(kRotations, params.nesting.rotation)},
                          {"seed", params.nesting.seed}};
+    result["cut"] = {
+        {"lead_in_mm", params.cut.lead_in_mm},
+        {"over_cut_mm", params.cut.over_cut_mm ? json(*params.cut.over_cut_mm) : json("auto")},
+        {"tabs", params.cut.tabs},
+        {"tab_mm", params.cut.tab_mm},
+        {"common_edges", params.cut.common_edges},
+        {"heat", params.cut.heat}};
     result["output"] = {{"dialect", name_of(kDialects, params.output.dialect)},
                         {"device", params.output.device},
                         {"machine", params.output.machine},

@@ -23,6 +23,7 @@ PINNED = {
     r"cholmod\.h|Eigen/(CholmodSupport|SparseCholesky)": [r"geometry/sparse_solver\.cpp"],
     r"polyclipping/.*": [r"fab/.*\.cpp", r"fab/clipper_paths\.h"],
     r"hpdf\.h": [r"fab/guide/pdf\.cpp"],
+    r"png\.h": [r"drivers/sim/burn_picture\.cpp"],
     r"OpenMesh/.*": [r"geometry/mesh\.h"],
     r"termios\.h|asm/termbits\.h|sys/ioctl\.h|pty\.h": [r"drivers/.*", r"server/cli/.*"],
     r"sys/socket\.h|netdb\.h|arpa/inet\.h": [r"drivers/.*", r"server/.*"],

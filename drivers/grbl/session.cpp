@@ -235,7 +235,9 @@ void GrblSession::fill() {
     }
     std::deque<Pending>& source = job_runs() ? job_ : commands_;
     while (!source.empty()) {
-        const bool wait = !pending_.empty() && (source.front().alone || pending_.back().alone);
+        const bool wait =
+            (!pending_.empty() && (source.front().alone || pending_.back().alone)) ||
+            (source.front().origin == Origin::Job && !may_send_line(progress_.lines_sent));
         if (wait || !send_line(source.front())) {
             return;
         }
@@ -244,8 +246,9 @@ void GrblSession::fill() {
 }
 
 milliseconds GrblSession::poll_interval() const {
-    const bool hurry = halt_ != Halt::None || finishing_ || resume_wanted_ || standing_since_ ||
-                       beam_stands_since_;
+    // Of a job: where a power cut stops the beam is known to what it burns between two reports.
+    const bool hurry = job_runs() || halt_ != Halt::None || finishing_ || resume_wanted_ ||
+                       standing_since_ || beam_stands_since_;
     return hurry ? kFastPollInterval : kPollInterval;
 }
 

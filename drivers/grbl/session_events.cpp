@@ -148,6 +148,8 @@ void GrblSession::handle_message(const GrblEvent& event) {
         const std::size_t second = first == std::string::npos ? first : text.find(',', first + 1);
         build_options_ = text.substr(5, first == std::string::npos ? first : first - 5);
         if (second != std::string::npos) {
+            status_.planner_blocks =
+                static_cast<std::size_t>(std::strtoul(text.c_str() + first + 1, nullptr, 10)) + 1;
             const auto rx =
                 static_cast<std::size_t>(std::strtoul(text.c_str() + second + 1, nullptr, 10));
             // One byte below what it claims, and never below what every Grbl has.
@@ -161,6 +163,7 @@ void GrblSession::handle_message(const GrblEvent& event) {
 
 void GrblSession::handle_status(const StatusReport& report) {
     status_.state = report.state;
+    ++status_.reports;
     sub_state_ = report.sub_state;
     if (report.state != MachineState::Alarm && status_.alarm_code != 0) {
         status_.alarm_code = 0;

@@ -47,7 +47,9 @@ void MarlinSession::fill() {
     while (may_send()) {
         std::deque<Pending>* source = &again_;
         if (again_.empty()) {
-            const bool job = job_runs() && !cancelling_ && !holding_ && !job_.empty();
+            const bool job =
+                job_runs() && !cancelling_ && !holding_ && !job_.empty() &&
+                (job_.front().origin != Origin::Job || may_send_line(progress_.lines_sent));
             source = commands_.empty() && job ? &job_ : &commands_;
         }
         if (source->empty()) {

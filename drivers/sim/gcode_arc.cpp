@@ -88,8 +88,11 @@ void GcodeInterpreter::add_arc(const Block& block,
     const double wanted = std::floor(std::abs(0.5 * travel * radius) / chord);
     const int segments = static_cast<int>(std::clamp(wanted, 1.0, 100000.0));
     Block piece = block;
-    if (block.modal.inverse_time) {
+    if (block.modal.inverse_time && wanted >= 1.0) {
+        // The firmware forgets here that F is an inverse time: the pieces run at F times their
+        // number as mm/min.
         piece.modal.feed_mm_per_min *= segments;
+        piece.modal.inverse_time = false;
     }
     for (int k = 1; k < segments; ++k) {
         const double part = static_cast<double>(k) / segments;

@@ -38,7 +38,7 @@ constexpr int kBadJog = 16;
 struct GcodeInterpreter::Block {
     Modal modal;  // As it is after this line.
     std::optional<Motion> motion_word;
-    std::optional<int> non_modal;    // 4, 10, 28, 30, 53, 92; tenths added: 281, 301, 921.
+    std::optional<int> non_modal;    // 4, 10, 28, 30, 53, 92; G28.1 is 281, and so on.
     std::optional<int> tool_offset;  // 431, 49
     std::optional<int> stop;         // M0 1 2 30
     std::optional<BeamMode> beam_word;
@@ -55,13 +55,16 @@ struct GcodeInterpreter::Block {
     std::optional<double> t;
     Axes target_mm{};
     bool jog = false;
+    bool not_for_jog = false;  // Holds a command that $J= doesn't take.
 
     bool any_axis() const { return axis_given[0] || axis_given[1] || axis_given[2]; }
-    // The axis words belong to a motion, not to G10, G28, G92 …
-    bool moves() const {
-        return any_axis() && modal.motion != Motion::None && !tool_offset &&
-               (!non_modal || *non_modal == 53 || *non_modal == 4);
+    // G10, G28, G30, G92, G43.1 and G49 take the axis words themselves.
+    bool other_axes_user() const {
+        const int code = non_modal.value_or(0);
+        return tool_offset || code == 10 || code == 28 || code == 30 || code == 92;
     }
+    // The axis words belong to a motion.
+    bool moves() const { return any_axis() && modal.motion != Motion::None && !other_axes_user(); }
 };
 
 }  // namespace leafcutter::drivers

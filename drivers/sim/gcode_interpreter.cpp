@@ -16,10 +16,6 @@ double to_steps(double mm, double steps_per_mm) {
     return steps_per_mm > 0.0 ? std::round(mm * steps_per_mm) / steps_per_mm : mm;
 }
 
-std::string triple(const Axes& mm) {
-    return fmt::format("{:.3f},{:.3f},{:.3f}", mm[0], mm[1], mm[2]);
-}
-
 bool is_burning_motion(GcodeInterpreter::Motion motion) {
     return motion == GcodeInterpreter::Motion::Linear ||
            motion == GcodeInterpreter::Motion::ArcCw || motion == GcodeInterpreter::Motion::ArcCcw;
@@ -35,6 +31,8 @@ Interpretation GcodeInterpreter::run(std::string_view stripped, const Rules& rul
         result.error = check(block);
     }
     if (result.error == 0) {
+        const int code = block.non_modal.value_or(0);
+        result.writes_eeprom = code == 10 || code == 281 || code == 301;
         execute(block, rules, result.actions);
     }
     return result;
@@ -43,31 +41,26 @@ Interpretation GcodeInterpreter::run(std::string_view stripped, const Rules& rul
 Interpretation GcodeInterpreter::run_jog(std::string_view stripped, const Rules& rules) {
     Interpretation result;
     Block block;
-    result.error = read_words(stripped, block);
-    if (result.error != 0) {
-        return result;
-    }
-    const bool others = block.motion_word || block.stop || block.beam_word || block.tool_offset ||
-                        block.s || block.t || block.p || block.l || block.r ||
-                        block.modal.plane != modal_.plane || block.modal.flood != modal_.flood ||
-                        block.modal.coordinates != modal_.coordinates || block.modal.inverse_time ||
-                        (block.non_modal && *block.non_modal != 53);
-    if (others) {
-        result.error = grbl_error::kBadJog;
-    } else if (!block.feed || *block.feed == 0.0) {
-        result.error = grbl_error::kUndefinedFeed;
-    } else if (!block.any_axis()) {
-        result.error = grbl_error::kNoAxisWords;
-    }
-    if (result.error != 0) {
-        return result;
-    }
     block.jog = true;
-    block.modal.motion = Motion::Linear;
-    const double unit = block.modal.inches ? kMmPerInch : 1.0;
-    block.modal.feed_mm_per_min = *block.feed * unit;
-    resolve_target(block);
-    add_line(block, rules, block.target_mm, result.actions);
+    result.error = read_words(stripped, block);
+    if (result.error == 0 && !block.feed) {
+        result.error = grbl_error::kUndefinedFeed;
+    }
+    if (result.error == 0) {
+        result.error = check(block);
+    }
+    if (result.error == 0 && (block.s || block.t)) {
+        result.error = grbl_error::kUnusedWords;
+    }
+    if (result.error == 0 && (block.not_for_jog || (block.non_modal && *block.non_modal != 53))) {
+        result.error = grbl_error::kBadJog;
+    }
+    if (result.error == 0) {
+        // Without an axis word the target is machine zero: so does the firmware.
+        const Axes target = block.any_axis() ? block.target_mm : Axes{};
+        block.modal.power_s = modal_.power_s;
+        add_line(block, rules, target, result.actions);
+    }
     return result;
 }
 
@@ -90,11 +83,9 @@ Axes GcodeInterpreter::work_offset_mm() const {
 int GcodeInterpreter::check(Block& block) {
     const bool motion_line =
         block.moves() || (block.motion_word && *block.motion_word != Motion::None);
-    if (block.line_number && *block.line_number > 9999999.0) {
+    constexpr double kMostLines = 10000000.0;
+    if (block.line_number && *block.line_number > kMostLines) {
         return grbl_error::kLineNumber;
-    }
-    if (block.t && *block.t > 255.0) {
-        return grbl_error::kToolNumber;
     }
     const double unit = block.modal.inches ? kMmPerInch : 1.0;
     if (block.modal.inverse_time) {
@@ -105,12 +96,12 @@ int GcodeInterpreter::check(Block& block) {
         block.modal.feed_mm_per_min = block.feed.value_or(0.0);
     } else if (block.feed) {
         block.modal.feed_mm_per_min = *block.feed * unit;
-    } else if (modal_.inverse_time) {
+    } else if (modal_.inverse_time && !block.jog) {
         block.modal.feed_mm_per_min = 0.0;
     }
     block.modal.power_s = block.s.value_or(modal_.power_s);
     block.modal.tool = static_cast<int>(block.t.value_or(modal_.tool));
-    if (block.tool_offset == 431 &&
+    if (block.tool_offset == 43 &&
         !(block.axis_given[2] && !block.axis_given[0] && !block.axis_given[1])) {
         return grbl_error::kToolOffsetAxis;
     }
@@ -130,13 +121,15 @@ int GcodeInterpreter::check_non_modal(const Block& block) const {
         if (!block.any_axis()) {
             return grbl_error::kNoAxisWords;
         }
-        if (!block.p || !block.l) {
+        if (!block.p && !block.l) {
             return grbl_error::kValueMissing;
         }
-        if (*block.p > 6.0) {
+        constexpr double kMostSystems = 6.0;
+        if (block.p.value_or(0.0) > kMostSystems) {
             return grbl_error::kCoordinateSystem;
         }
-        if ((*block.l != 2.0 && *block.l != 20.0) || block.r) {
+        const double l = std::trunc(block.l.value_or(0.0));
+        if ((l != 2.0 && l != 20.0) || (l == 2.0 && block.r)) {
             return grbl_error::kUnsupported;
         }
     }
@@ -146,27 +139,28 @@ int GcodeInterpreter::check_non_modal(const Block& block) const {
     if (code == 53 && block.modal.motion != Motion::Rapid && block.modal.motion != Motion::Linear) {
         return grbl_error::kG53Motion;
     }
-    if ((block.p && code != 4 && code != 10) || (block.l && code != 10)) {
-        return grbl_error::kUnusedWords;
-    }
     return 0;
 }
 
 int GcodeInterpreter::check_motion(Block& block, bool motion_line) const {
-    const bool offsets = block.offset_given[0] || block.offset_given[1] || block.offset_given[2];
-    const bool other_axes_user = block.non_modal && *block.non_modal != 53 && *block.non_modal != 4;
-    if (block.modal.motion == Motion::None && block.any_axis() && !other_axes_user &&
-        !block.tool_offset) {
+    if (block.modal.motion == Motion::None && block.any_axis()) {
         return grbl_error::kAxisWordsExist;
     }
     if (motion_line && block.modal.motion != Motion::Rapid && block.modal.feed_mm_per_min == 0.0) {
         return grbl_error::kUndefinedFeed;
     }
-    const bool arc = block.modal.motion == Motion::ArcCw || block.modal.motion == Motion::ArcCcw;
-    if (motion_line && arc) {
-        return check_arc(block);
+    const bool arc = motion_line &&
+                     (block.modal.motion == Motion::ArcCw || block.modal.motion == Motion::ArcCcw);
+    if (arc) {
+        if (const int error = check_arc(block)) {
+            return error;
+        }
     }
-    return offsets || block.r ? grbl_error::kUnusedWords : 0;
+    const bool offsets = block.offset_given[0] || block.offset_given[1] || block.offset_given[2];
+    const int code = block.non_modal.value_or(0);
+    const bool unused = (block.p && code != 4 && code != 10) || (block.l && code != 10) ||
+                        (!arc && (offsets || block.r));
+    return unused ? grbl_error::kUnusedWords : 0;
 }
 
 void GcodeInterpreter::resolve_target(Block& block) const {
@@ -199,12 +193,15 @@ void GcodeInterpreter::execute(Block& block, const Rules& rules, std::vector<Act
         actions.push_back({.kind = Action::Kind::Offset, .move = {}});
     }
     execute_beam(block, rules, actions);
+    if (block.modal.flood != modal_.flood) {
+        actions.push_back({.kind = Action::Kind::Sync, .move = {}});
+    }
     modal_ = block.modal;
     if (block.non_modal == 4) {
         actions.push_back({.kind = Action::Kind::Dwell, .move = {}, .seconds = *block.p});
     }
     if (block.tool_offset) {
-        tool_length_mm_ = *block.tool_offset == 431 ? block.axes[2] : 0.0;
+        tool_length_mm_ = *block.tool_offset == 43 ? block.axes[2] : 0.0;
         actions.push_back({.kind = Action::Kind::Offset, .move = {}});
     }
     execute_axes(block, rules, actions);
@@ -261,15 +258,23 @@ void GcodeInterpreter::execute_axes(Block& block,
         if (block.any_axis()) {
             add_line(rapid, rules, block.target_mm, actions);
         }
-        add_line(rapid, rules, code == 28 ? g28_mm_ : g30_mm_, actions);
-    } else if (code == 281) {
+        Axes home = code == 28 ? g28_mm_ : g30_mm_;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool stays = block.any_axis() && !block.axis_given[axis];
+            home[axis] = stays ? position_mm_[axis] : home[axis];
+        }
+        add_line(rapid, rules, home, actions);
+        return;
+    }
+    if (code == 281) {
         g28_mm_ = position_mm_;
     } else if (code == 301) {
         g30_mm_ = position_mm_;
     } else if (code == 10 || code == 92 || code == 921) {
         set_offsets(block);
         actions.push_back({.kind = Action::Kind::Offset, .move = {}});
-    } else if (block.moves()) {
+    }
+    if (block.moves()) {
         const bool arc =
             block.modal.motion == Motion::ArcCw || block.modal.motion == Motion::ArcCcw;
         arc ? add_arc(block, rules, actions) : add_line(block, rules, block.target_mm, actions);
@@ -283,15 +288,16 @@ void GcodeInterpreter::set_offsets(const Block& block) {
         return;
     }
     const bool stored = block.non_modal == 10;
-    const bool from_here = !stored || *block.l == 20.0;
-    const int system =
-        stored && *block.p != 0.0 ? 53 + static_cast<int>(*block.p) : modal_.coordinates;
+    const bool from_here = !stored || std::trunc(*block.l) == 20.0;
+    const int chosen = static_cast<int>(block.p.value_or(0.0));
+    const int system = stored && chosen != 0 ? 53 + chosen : modal_.coordinates;
     Axes& offset = stored ? coordinates_.at(system) : g92_mm_;
     const Axes& other = stored ? g92_mm_ : coordinates_.at(modal_.coordinates);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (block.axis_given[axis]) {
-            offset[axis] =
-                from_here ? position_mm_[axis] - other[axis] - block.axes[axis] : block.axes[axis];
+            const double tool = axis == 2 ? tool_length_mm_ : 0.0;
+            offset[axis] = from_here ? position_mm_[axis] - other[axis] - tool - block.axes[axis]
+                                     : block.axes[axis];
         }
     }
 }
@@ -321,23 +327,30 @@ void GcodeInterpreter::add_line(const Block& block,
     actions.push_back(action);
 }
 
-std::string GcodeInterpreter::report_modal() const {
+std::string GcodeInterpreter::report_modal(bool inches) const {
     const int motion = static_cast<int>(modal_.motion);
     const int beam = modal_.beam == BeamMode::Off ? 5 : (modal_.beam == BeamMode::Constant ? 3 : 4);
-    return fmt::format("[GC:G{} G{} G{} G{} G{} G{} M{} M{} T{} F{:.0f} S{:.0f}]", motion,
-                       modal_.coordinates, modal_.plane, modal_.inches ? 20 : 21,
-                       modal_.relative ? 91 : 90, modal_.inverse_time ? 93 : 94, beam,
-                       modal_.flood ? 8 : 9, modal_.tool, modal_.feed_mm_per_min, modal_.power_s);
+    return fmt::format(
+        "[GC:G{} G{} G{} G{} G{} G{} M{} M{} T{} F{:.{}f} S{:.0f}]", motion, modal_.coordinates,
+        modal_.plane, modal_.inches ? 20 : 21, modal_.relative ? 91 : 90,
+        modal_.inverse_time ? 93 : 94, beam, modal_.flood ? 8 : 9, modal_.tool,
+        modal_.feed_mm_per_min / (inches ? kMmPerInch : 1.0), inches ? 1 : 0, modal_.power_s);
 }
 
-std::string GcodeInterpreter::report_offsets() const {
+std::string GcodeInterpreter::report_offsets(bool inches) const {
+    const int digits = inches ? 4 : 3;
+    const double unit = inches ? kMmPerInch : 1.0;
+    const auto triple = [&](const Axes& mm) {
+        return fmt::format("{:.{}f},{:.{}f},{:.{}f}", mm[0] / unit, digits, mm[1] / unit, digits,
+                           mm[2] / unit, digits);
+    };
     std::string text;
     for (const auto& [number, offset] : coordinates_) {
         text += fmt::format("[G{}:{}]\r\n", number, triple(offset));
     }
-    text += fmt::format("[G28:{}]\r\n[G30:{}]\r\n[G92:{}]\r\n[TLO:{:.3f}]\r\n[PRB:{}:0]\r\n",
-                        triple(g28_mm_), triple(g30_mm_), triple(g92_mm_), tool_length_mm_,
-                        triple(Axes{}));
+    text += fmt::format("[G28:{}]\r\n[G30:{}]\r\n[G92:{}]\r\n[TLO:{:.{}f}]\r\n[PRB:{}:0]\r\n",
+                        triple(g28_mm_), triple(g30_mm_), triple(g92_mm_), tool_length_mm_ / unit,
+                        digits, triple(Axes{}));
     return text;
 }
 

@@ -2,7 +2,7 @@
 // report. Keeps the modal state; knows neither time nor motion.
 //
 // Follows Grbl 1.1's gcode.c in its rules: modal groups, which words a command uses, error numbers,
-// and the laser mode's treatment of S.
+// and the laser mode's treatment of S. Without probing (G38).
 
 #pragma once
 
@@ -20,7 +20,7 @@ namespace leafcutter::drivers {
 struct Action {
     enum class Kind {
         Move,
-        Sync,    // Wait until every move has ended.
+        Sync,    // Wait until every move has ended (the air assist is switched).
         Beam,    // Sync, then `move.beam` and `move.power_s` hold while standing.
         Dwell,   // Sync, then wait `seconds`.
         Pause,   // M0: sync, then hold until resumed.
@@ -36,6 +36,7 @@ struct Action {
 struct Interpretation {
     int error = 0;  // Grbl's error code; `actions` is empty then.
     std::vector<Action> actions;
+    bool writes_eeprom = false;  // G10, G28.1, G30.1.
 };
 
 class GcodeInterpreter {
@@ -50,22 +51,6 @@ public:
 
     enum class Motion { Rapid = 0, Linear = 1, ArcCw = 2, ArcCcw = 3, None = 80 };
 
-    Interpretation run(std::string_view stripped, const Rules& rules);
-
-    // "$J=" without the "$J=": moves without touching the modal state.
-    Interpretation run_jog(std::string_view stripped, const Rules& rules);
-
-    // Modal state of power-up. Forgets G92; keeps G54..G59, G28, G30.
-    void reset(const Axes& position_mm);
-    void set_position(const Axes& position_mm) { position_mm_ = position_mm; }
-
-    Axes work_offset_mm() const;
-    double spindle_speed() const { return modal_.power_s; }
-    BeamMode beam() const { return modal_.beam; }
-
-    std::string report_modal() const;    // "[GC:…]"
-    std::string report_offsets() const;  // The answer to $#.
-
     struct Modal {
         Motion motion = Motion::Rapid;
         int plane = 17;
@@ -79,6 +64,24 @@ public:
         double power_s = 0.0;
         int tool = 0;
     };
+
+    Interpretation run(std::string_view stripped, const Rules& rules);
+
+    // "$J=" without the "$J=": moves without touching the modal state.
+    Interpretation run_jog(std::string_view stripped, const Rules& rules);
+
+    // Modal state of power-up. Forgets G92; keeps G54..G59, G28, G30.
+    void reset(const Axes& position_mm);
+    void set_position(const Axes& position_mm) { position_mm_ = position_mm; }
+
+    Axes work_offset_mm() const;
+    double spindle_speed() const { return modal_.power_s; }
+    BeamMode beam() const { return modal_.beam; }
+    bool flood() const { return modal_.flood; }
+    const Modal& modal() const { return modal_; }
+
+    std::string report_modal(bool inches = false) const;    // "[GC:…]"
+    std::string report_offsets(bool inches = false) const;  // The answer to $#.
 
 private:
     int read_words(std::string_view stripped, Block& block) const;

@@ -26,64 +26,82 @@ enum class Group {
     Coolant
 };
 
-// A command's number in tenths, so that G28.1 is 281.
-int tenths(double value) {
-    return static_cast<int>(std::lround(value * 10.0));
+// A command's number as Grbl reads it: hundredths behind the point are told apart, no more.
+struct CommandNumber {
+    int whole = 0;
+    int hundredths = 0;
+};
+
+CommandNumber split_number(double value) {
+    const double whole = std::trunc(value);
+    return {static_cast<int>(whole), static_cast<int>(std::lround(100.0 * (value - whole)))};
 }
 
-bool has_known_fraction(double value) {
-    return std::abs(value * 10.0 - tenths(value)) < 1e-6;
-}
-
-std::optional<Group> group_of_g(int code) {
-    switch (code) {
-        case 40:
-        case 100:
-        case 280:
-        case 281:
-        case 300:
-        case 301:
-        case 530:
-        case 920:
-        case 921:
+std::optional<Group> group_of_g(int whole) {
+    switch (whole) {
+        case 4:
+        case 10:
+        case 28:
+        case 30:
+        case 53:
+        case 92:
             return Group::NonModal;
         case 0:
-        case 10:
-        case 20:
-        case 30:
-        case 800:
+        case 1:
+        case 2:
+        case 3:
+        case 80:
             return Group::Motion;
-        case 170:
-        case 180:
-        case 190:
+        case 17:
+        case 18:
+        case 19:
             return Group::Plane;
-        case 900:
-        case 910:
+        case 90:
+        case 91:
             return Group::Distance;
-        case 911:
-            return Group::ArcDistance;
-        case 930:
-        case 940:
+        case 93:
+        case 94:
             return Group::FeedMode;
-        case 200:
-        case 210:
+        case 20:
+        case 21:
             return Group::Units;
-        case 400:
+        case 40:
             return Group::CutterCompensation;
-        case 431:
-        case 490:
+        case 43:
+        case 49:
             return Group::ToolLength;
-        case 540:
-        case 550:
-        case 560:
-        case 570:
-        case 580:
-        case 590:
+        case 54:
+        case 55:
+        case 56:
+        case 57:
+        case 58:
+        case 59:
             return Group::Coordinates;
-        case 610:
+        case 61:
             return Group::Control;
         default:
             return std::nullopt;
+    }
+}
+
+// What a fraction behind a G number makes of it: Grbl's error, 0 where it belongs there.
+int fraction_error(const CommandNumber& number) {
+    switch (number.whole) {
+        case 28:
+        case 30:
+        case 92:
+            return number.hundredths == 0 || number.hundredths == 10 ? 0 : grbl_error::kUnsupported;
+        case 43:
+            return number.hundredths == 10 ? 0 : grbl_error::kUnsupported;
+        case 49:
+            return 0;
+        case 91:
+            return number.hundredths == 0 || number.hundredths == 10 ? 0 : grbl_error::kUnsupported;
+        case 61:
+        case 90:
+            return number.hundredths == 0 ? 0 : grbl_error::kUnsupported;
+        default:
+            return number.hundredths > 0 ? grbl_error::kNotInteger : 0;
     }
 }
 
@@ -113,32 +131,33 @@ BeamMode beam_of(int code) {
     return code == 3 ? BeamMode::Constant : BeamMode::Dynamic;
 }
 
-void apply_g(int code, Group group, GcodeInterpreter::Block& block) {
+void apply_g(const CommandNumber& number, Group group, GcodeInterpreter::Block& block) {
+    const int whole = number.whole;
     switch (group) {
         case Group::NonModal:
-            block.non_modal = code % 10 == 0 ? code / 10 : code;
+            block.non_modal = number.hundredths == 0 ? whole : whole * 10 + 1;
             break;
         case Group::Motion:
-            block.modal.motion = static_cast<GcodeInterpreter::Motion>(code / 10);
+            block.modal.motion = static_cast<GcodeInterpreter::Motion>(whole);
             block.motion_word = block.modal.motion;
             break;
         case Group::Plane:
-            block.modal.plane = code / 10;
+            block.modal.plane = whole;
             break;
         case Group::Distance:
-            block.modal.relative = code == 910;
+            block.modal.relative = whole == 91;
             break;
         case Group::FeedMode:
-            block.modal.inverse_time = code == 930;
+            block.modal.inverse_time = whole == 93;
             break;
         case Group::Units:
-            block.modal.inches = code == 200;
+            block.modal.inches = whole == 20;
             break;
         case Group::ToolLength:
-            block.tool_offset = code;
+            block.tool_offset = whole;
             break;
         case Group::Coordinates:
-            block.modal.coordinates = code / 10;
+            block.modal.coordinates = whole;
             break;
         default:
             break;
@@ -177,14 +196,22 @@ std::optional<double>* value_slot(char letter, GcodeInterpreter::Block& block) {
     }
 }
 
+bool may_be_negative(char letter) {
+    return letter == 'L' || letter == 'R';
+}
+
 int apply_value(const GcodeWord& word, GcodeInterpreter::Block& block) {
     const char letter = word.letter;
+    constexpr double kMostTools = 255.0;
+    if (letter == 'T' && word.value > kMostTools) {
+        return grbl_error::kToolNumber;
+    }
     if (std::optional<double>* slot = value_slot(letter, block)) {
         if (*slot) {
             return grbl_error::kWordRepeated;
         }
         *slot = word.value;
-        return word.value < 0.0 && letter != 'R' ? grbl_error::kNegative : 0;
+        return word.value < 0.0 && !may_be_negative(letter) ? grbl_error::kNegative : 0;
     }
     const bool axis = letter >= 'X' && letter <= 'Z';
     if (!axis && (letter < 'I' || letter > 'K')) {
@@ -200,55 +227,88 @@ int apply_value(const GcodeWord& word, GcodeInterpreter::Block& block) {
     return 0;
 }
 
-bool uses_axes(int g_code) {
-    return g_code == 100 || g_code == 280 || g_code == 300 || g_code == 920 || g_code == 431;
+// Commands of which a line may hold only one, as each could take the axis words.
+bool uses_axes(const CommandNumber& number, Group group) {
+    const bool whole = number.hundredths == 0;
+    return (group == Group::Motion && number.whole != 80) || group == Group::ToolLength ||
+           (group == Group::NonModal && whole && number.whole != 4 && number.whole != 53);
 }
 
 struct GroupsUsed {
     std::set<Group> groups;
-    int axis_commands = 0;
+    bool axes_claimed = false;
 };
 
-// A G or M word. Returns Grbl's error, 0 for none.
-int apply_command(const GcodeWord& word, GcodeInterpreter::Block& block, GroupsUsed& used) {
-    const bool general = word.letter == 'G';
-    if (!general && word.value != std::floor(word.value)) {
+// A G word. Returns Grbl's error, 0 for none.
+int apply_general(double value, GcodeInterpreter::Block& block, GroupsUsed& used) {
+    const CommandNumber number = split_number(value);
+    const std::optional<Group> group = group_of_g(number.whole);
+    if (!group || value < 0.0) {
+        return grbl_error::kUnsupported;
+    }
+    if (uses_axes(number, *group)) {
+        if (used.axes_claimed) {
+            return grbl_error::kAxisConflict;
+        }
+        used.axes_claimed = true;
+    }
+    if (const int error = fraction_error(number)) {
+        return error;
+    }
+    const bool arc_distance = number.whole == 91 && number.hundredths != 0;
+    if (!used.groups.insert(arc_distance ? Group::ArcDistance : *group).second) {
+        return grbl_error::kModalGroup;
+    }
+    block.not_for_jog =
+        block.not_for_jog || arc_distance ||
+        (*group != Group::NonModal && *group != Group::Distance && *group != Group::Units);
+    if (!arc_distance) {
+        apply_g(number, *group, block);
+    }
+    return 0;
+}
+
+// An M word. Returns Grbl's error, 0 for none.
+int apply_machine(double value, GcodeInterpreter::Block& block, GroupsUsed& used) {
+    const CommandNumber number = split_number(value);
+    if (number.hundredths > 0) {
         return grbl_error::kNotInteger;
     }
-    if (word.value < 0.0 || !has_known_fraction(word.value)) {
+    const std::optional<Group> group = group_of_m(number.whole);
+    if (!group || value < 0.0) {
         return grbl_error::kUnsupported;
-    }
-    const int code = general ? tenths(word.value) : static_cast<int>(word.value);
-    const std::optional<Group> group = general ? group_of_g(code) : group_of_m(code);
-    if (!group) {
-        return grbl_error::kUnsupported;
-    }
-    const bool moves = *group == Group::Motion && code != 800;
-    used.axis_commands += general && (uses_axes(code) || moves) ? 1 : 0;
-    if (used.axis_commands > 1) {
-        return grbl_error::kAxisConflict;
     }
     if (!used.groups.insert(*group).second) {
         return grbl_error::kModalGroup;
     }
-    if (general) {
-        apply_g(code, *group, block);
-    } else {
-        apply_m(code, *group, block);
-    }
+    block.not_for_jog = true;
+    apply_m(number.whole, *group, block);
     return 0;
+}
+
+int apply_word(const GcodeWord& word, GcodeInterpreter::Block& block, GroupsUsed& used) {
+    switch (word.letter) {
+        case 'G':
+            return apply_general(word.value, block, used);
+        case 'M':
+            return apply_machine(word.value, block, used);
+        default:
+            return apply_value(word, block);
+    }
 }
 
 }  // namespace
 
 int GcodeInterpreter::read_words(std::string_view stripped, Block& block) const {
     block.modal = modal_;
+    if (block.jog) {
+        block.modal.motion = Motion::Linear;
+        block.modal.inverse_time = false;
+    }
     const GcodeWords words = split_words(stripped);
     GroupsUsed used;
     for (const GcodeWord& word : words.words) {
-        const bool command = word.letter == 'G' || word.letter == 'M';
-        if (const int error =
-                command ? apply_command(word, block, used) : apply_value(word, block)) {
+        if (const int error = apply_word(word, block, used)) {
             return error;
         }
     }

@@ -17,9 +17,11 @@ constexpr int kSoftLimitAlarm = 2;
 
 }  // namespace
 
-GrblMachine::GrblMachine(const GrblMachineOptions& options) : line_time_s_(options.line_time_s) {
+GrblMachine::GrblMachine(const GrblMachineOptions& options)
+    : line_time_s_(options.line_time_s), eeprom_time_s_(options.eeprom_time_s) {
     settings_.set(130, options.bed_width_mm);
     settings_.set(131, options.bed_height_mm);
+    apply_overrides();
     greet();
 }
 
@@ -39,10 +41,16 @@ std::string GrblMachine::advance(double seconds) {
         if (busy_until_s_ > now_s_) {
             step = std::min(step, busy_until_s_ - now_s_);
         }
+        if (alarm_delay_) {
+            step = std::min(step, alarm_until_s_ - now_s_);
+        }
         const double moved = advance_motion(step);
         const bool stood = motion_.standing() && moved == 0.0;
         now_s_ += stood ? step : moved;
         exposed_since_s_ = stood ? exposed_since_s_ : now_s_;
+        if (alarm_delay_ && now_s_ >= alarm_until_s_) {
+            end_alarm_delay();
+        }
         settle();
         work();
     }
@@ -57,7 +65,7 @@ double GrblMachine::advance_motion(double seconds) {
 bool GrblMachine::at_rest() const {
     const bool waiting = !actions_.empty() && !blocked();
     return motion_.standing() && state_ != State::Jog && busy_until_s_ <= now_s_ && !waiting &&
-           (rx_.empty() || blocked());
+           !alarm_delay_ && (rx_.empty() || blocked());
 }
 
 double GrblMachine::beam_power() const {
@@ -90,6 +98,7 @@ void GrblMachine::settle() {
     }
     if (soft_limit_) {
         soft_limit_ = false;
+        owes_answer_ = line_pending_;
         clear_all();
         set_alarm(kSoftLimitAlarm);
     } else if (jog_flush_) {
@@ -97,12 +106,9 @@ void GrblMachine::settle() {
         motion_.clear(now_s_, log_);
         interpreter_.set_position(motion_.position_mm());
         actions_.clear();
-        state_ = State::Idle;
+        state_ = std::exchange(door_after_jog_, false) ? State::Door : State::Idle;
     } else if (state_ == State::Hold || state_ == State::Door) {
-        if (settings_.is_on(32) || state_ == State::Door) {
-            expose(now_s_);
-            standing_power_ = 0.0;
-        }
+        settle_hold();
     } else if (motion_.empty() && (state_ == State::Run || state_ == State::Jog)) {
         state_ = State::Idle;
     }
@@ -111,9 +117,32 @@ void GrblMachine::settle() {
     }
 }
 
+// A hold that has come to a stand puts the beam out, in laser mode; a door always does.
+void GrblMachine::settle_hold() {
+    const bool lit_mode = interpreter_.beam() != BeamMode::Off;
+    const bool stops = state_ == State::Door || (settings_.is_on(32) && lit_mode);
+    if (stops && !beam_stopped_) {
+        begin_beam(0.0);
+        beam_stopped_ = true;
+    }
+}
+
+// The power that holds while standing, from now on.
+void GrblMachine::begin_beam(double power_s) {
+    expose(now_s_);
+    standing_power_ = power_s;
+    reports_to_override_ = 0;
+}
+
+// The firmware can't receive while it writes.
+void GrblMachine::write_eeprom() {
+    deaf_until_s_ = now_s_ + eeprom_time_s_;
+    busy_until_s_ = std::max(busy_until_s_, deaf_until_s_);
+}
+
 // Nothing may be read or begun now; real-time bytes still act.
 bool GrblMachine::blocked() const {
-    return critical_ || soft_limit_ || jog_flush_ || state_ == State::Hold ||
+    return critical_ || alarm_delay_ || soft_limit_ || jog_flush_ || state_ == State::Hold ||
            state_ == State::Door || state_ == State::Sleep || state_ == State::Home;
 }
 
@@ -157,21 +186,21 @@ bool GrblMachine::perform(const Action& action) {
     }
     switch (action.kind) {
         case Action::Kind::Beam:
-            expose(now_s_);
-            standing_power_ = action.move.power_s;
+            begin_beam(motion_.overrides().put_out(action.move.power_s));
+            break;
+        case Action::Kind::Sync:
+            reports_to_override_ = 0;
             break;
         case Action::Kind::Dwell:
             busy_until_s_ = now_s_ + action.seconds;
             break;
         case Action::Kind::Pause:
-            held_ = State::Idle;
-            state_ = State::Hold;
-            motion_.hold();
-            settle();
+            feed_hold();
             break;
         case Action::Kind::End:
             override_percent_ = {100, 100, 100};
             apply_overrides();
+            reports_to_override_ = reports_to_offset_ = 0;
             out_ += "[MSG:Pgm End]\r\n";
             break;
         case Action::Kind::Home:
@@ -201,14 +230,14 @@ bool GrblMachine::perform_move(const Action& action) {
     expose(now_s_);
     if (motion_.push(action.move, limits())) {
         const bool stays_lit = action.move.beam != BeamMode::Off && !action.move.scale_power;
-        standing_power_ = stays_lit ? action.move.power_s : 0.0;
+        standing_power_ = stays_lit ? motion_.overrides().put_out(action.move.power_s) : 0.0;
         state_ = state_ == State::Idle ? State::Run : state_;
     } else if (action.move.beam == BeamMode::Constant && settings_.is_on(32)) {
         // Grbl 1.1 motion_control.c: a move of no length still sets the power of a constant beam.
         if (!motion_.empty()) {
             return false;
         }
-        standing_power_ = action.move.power_s;
+        begin_beam(motion_.overrides().put_out(action.move.power_s));
     }
     return true;
 }
@@ -255,6 +284,9 @@ void GrblMachine::run_line() {
         answer(kLocked);
     } else {
         Interpretation result = interpreter_.run(line, rules());
+        if (result.writes_eeprom) {
+            write_eeprom();
+        }
         if (result.error != 0) {
             answer(result.error);
         }
@@ -267,56 +299,6 @@ void GrblMachine::answer(int error) {
     line_pending_ = false;
     gcode_lines_ += pending_is_gcode_ ? 1 : 0;
     pending_is_gcode_ = false;
-}
-
-void GrblMachine::set_alarm(int code) {
-    state_ = State::Alarm;
-    critical_ = code == 1 || code == 2;
-    out_ += fmt::format("ALARM:{}\r\n", code);
-    if (critical_) {
-        out_ += "[MSG:Reset to continue]\r\n";
-    }
-}
-
-// What every reset forgets; the machine's position stays.
-void GrblMachine::clear_all() {
-    if (motion_.standing()) {
-        expose(now_s_);
-    }
-    motion_.clear(now_s_, log_);
-    standing_power_ = 0.0;
-    rx_.clear();
-    line_.clear();
-    line_overflow_ = in_comment_ = skip_to_end_ = false;
-    actions_.clear();
-    line_pending_ = pending_is_gcode_ = false;
-    busy_until_s_ = now_s_;
-    soft_limit_ = jog_flush_ = critical_ = false;
-    override_percent_ = {100, 100, 100};
-    apply_overrides();
-    reports_to_offset_ = 0;
-    reports_to_override_ = 1;
-    interpreter_.reset(motion_.position_mm());
-}
-
-void GrblMachine::greet() {
-    out_ += "\r\nGrbl 1.1h ['$' for help]\r\n";
-    if (state_ == State::Alarm) {
-        out_ += "[MSG:'$H'|'$X' to unlock]\r\n";
-    }
-}
-
-void GrblMachine::trip_hard_limit() {
-    clear_all();
-    set_alarm(1);
-}
-
-void GrblMachine::power_cycle() {
-    clear_all();
-    motion_.set_position({});
-    interpreter_ = GcodeInterpreter{};
-    state_ = settings_.is_on(22) ? State::Alarm : State::Idle;
-    greet();
 }
 
 GcodeInterpreter::Rules GrblMachine::rules() const {
@@ -336,7 +318,8 @@ MotionLimits GrblMachine::limits() const {
 
 void GrblMachine::apply_overrides() {
     const auto part = [this](std::size_t which) { return override_percent_[which] / 100.0; };
-    motion_.set_overrides({part(0), part(1), part(2)}, now_s_, log_);
+    motion_.set_overrides({part(0), part(1), part(2), settings_.get(31), settings_.get(30)}, now_s_,
+                          log_);
 }
 
 }  // namespace leafcutter::drivers

@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <deque>
 #include <string>
@@ -21,6 +22,8 @@ struct GrblMachineOptions {
     double bed_width_mm = 600.0;
     double bed_height_mm = 400.0;
     double line_time_s = 0.0;  // How long the controller's processor takes for a line.
+    // How long a write to the EEPROM takes. What arrives meanwhile is lost, real-time bytes too.
+    double eeprom_time_s = 0.0;
 };
 
 class GrblMachine {
@@ -65,6 +68,17 @@ private:
     void jog_cancel();
     void soft_reset();
 
+    void toggle_stopped_beam();
+    std::string status_report();
+
+    // Alarms and restarts: grbl_restart.cpp
+    void set_alarm(int code);
+    void end_alarm_delay();
+    void clear_all();
+    void restart();
+    void greet();
+    void run_startup_lines();
+
     // Lines: grbl_machine.cpp
     void work();
     bool blocked() const;
@@ -73,11 +87,10 @@ private:
     void take_byte(char byte);
     void run_line();
     void answer(int error);
-    void set_alarm(int code);
-    void clear_all();
-    void greet();
-    void start_motion();
+    void begin_beam(double power_s);
+    void write_eeprom();
     void settle();
+    void settle_hold();
     void expose(double until_s);
     double advance_motion(double seconds);
     GcodeInterpreter::Rules rules() const;
@@ -86,35 +99,49 @@ private:
 
     // `$` lines: grbl_system_commands.cpp
     int run_system_line(std::string_view line);
-    int run_report_command(std::string_view line);
-    int run_action_command(std::string_view line);
+    int run_action_command(char command);
+    int run_storing_command(const std::string& line);
+    int home();
+    int sleep();
+    int build_info(const std::string& line);
+    int startup_line(const std::string& line);
+    int jog_state_error() const;
     int set_setting(std::string_view line);
     int jog(std::string_view line);
     int toggle_check();
     int restore(char what);
     bool beyond_travel(const Axes& target_mm) const;
     void finish_home();
-    std::string status_report();
 
     GrblSettings settings_;
     GcodeInterpreter interpreter_;
     MotionQueue motion_;
     BeamLog log_;
     double line_time_s_;
+    double eeprom_time_s_;
+    std::string build_note_;
+    std::array<std::string, 2> startup_lines_;
 
     State state_ = State::Idle;
-    State held_ = State::Idle;  // What a hold or a door interrupted.
-    bool critical_ = false;     // Alarm 1 or 2: serves nothing but a reset.
-    bool soft_limit_ = false;   // Slowing down because a target lies beyond the travel.
-    bool jog_flush_ = false;    // Slowing down to end a jog.
+    bool critical_ = false;    // Alarm 1 or 2: serves nothing but a reset.
+    bool soft_limit_ = false;  // Slowing down because a target lies beyond the travel.
+    bool jog_flush_ = false;   // Slowing down to end a jog.
     double now_s_ = 0.0;
     double busy_until_s_ = 0.0;  // Dwell, homing, or the time a line takes.
-    bool dwelling_ = false;
+    double held_since_s_ = 0.0;
+    double alarm_until_s_ = 0.0;  // After "ALARM:n" the firmware serves nothing for a while.
+    double deaf_until_s_ = 0.0;   // While the EEPROM is written, nothing is received.
+    bool alarm_delay_ = false;
+    bool restarting_ = false;    // A reset is under way, held up by its alarm.
+    bool owes_answer_ = false;   // To the line that an alarm or a reset has cut short.
+    bool status_asked_ = false;  // While homing: answered at its end.
+    bool beam_stopped_ = false;  // By a hold; a resume says that it restores it.
+    bool door_after_jog_ = false;
     double standing_power_ = 0.0;
     double exposed_since_s_ = 0.0;
     std::array<int, 3> override_percent_{100, 100, 100};
     int reports_to_offset_ = 0;
-    int reports_to_override_ = 1;
+    int reports_to_override_ = 0;
 
     std::deque<char> rx_;
     std::string line_;

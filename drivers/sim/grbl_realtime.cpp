@@ -1,6 +1,7 @@
 // The simulated controller's receiving interrupt and its real-time commands.
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,14 +16,15 @@ constexpr unsigned char kDoor = 0x84;
 constexpr unsigned char kJogCancel = 0x85;
 constexpr unsigned char kFirstOverride = 0x90;
 constexpr unsigned char kLastOverride = 0x9D;
-constexpr int kResetWhileMoving = 3;
-constexpr int kResetWhileHoming = 6;
+constexpr unsigned char kStopBeam = 0x9E;
 
 }  // namespace
 
 void GrblMachine::receive(char byte) {
     const auto code = static_cast<unsigned char>(byte);
-    if (code == kReset || code == '?' || code == '!' || code == '~' || code > 0x7F) {
+    if (now_s_ < deaf_until_s_) {
+        ++bytes_dropped_;
+    } else if (code == kReset || code == '?' || code == '!' || code == '~' || code > 0x7F) {
         realtime(code);
     } else if (rx_.size() < kRxBytes) {
         rx_.push_back(byte);
@@ -36,12 +38,14 @@ void GrblMachine::realtime(unsigned char byte) {
         soft_reset();
         return;
     }
-    if (critical_) {
+    if (critical_ || alarm_delay_) {
         return;
     }
     switch (byte) {
         case '?':
-            if (state_ != State::Home) {
+            if (state_ == State::Home) {
+                status_asked_ = true;
+            } else {
                 out_ += status_report();
             }
             break;
@@ -57,6 +61,9 @@ void GrblMachine::realtime(unsigned char byte) {
         case kJogCancel:
             jog_cancel();
             break;
+        case kStopBeam:
+            toggle_stopped_beam();
+            break;
         default:
             if (byte >= kFirstOverride && byte <= kLastOverride) {
                 adjust_override(byte);
@@ -69,8 +76,8 @@ void GrblMachine::feed_hold() {
     if (state_ == State::Jog) {
         jog_cancel();
     } else if (state_ == State::Idle || state_ == State::Run) {
-        held_ = state_;
         state_ = State::Hold;
+        held_since_s_ = now_s_;
         motion_.hold();
         settle();
     }
@@ -81,23 +88,45 @@ void GrblMachine::cycle_start() {
     if (!held || !motion_.standing()) {
         return;  // While slowing down it is ignored, as by the real one.
     }
+    if (std::exchange(beam_stopped_, false) && state_ == State::Hold) {
+        out_ += "[MSG:Restoring spindle]\r\n";
+    }
     motion_.release();
+    const double rest_s = busy_until_s_ - held_since_s_;
+    busy_until_s_ = rest_s > 0.0 ? now_s_ + rest_s : busy_until_s_;
     state_ = motion_.empty() ? State::Idle : State::Run;
     work();
 }
 
 void GrblMachine::safety_door() {
-    if (state_ == State::Alarm || state_ == State::Sleep || state_ == State::Door) {
+    if (state_ == State::Alarm || state_ == State::Check) {
         return;
     }
+    out_ += "[MSG:Check Door]\r\n";
     if (state_ == State::Jog) {
+        door_after_jog_ = true;
         jog_cancel();
+    } else if (state_ != State::Sleep && state_ != State::Door && state_ != State::Home) {
+        state_ = State::Door;
+        held_since_s_ = now_s_;
+        beam_stopped_ = false;
+        motion_.hold();
+        settle();
+    }
+}
+
+// 0x9E: puts the beam out during a hold, or lights a constant one again.
+void GrblMachine::toggle_stopped_beam() {
+    if (state_ != State::Hold || !motion_.standing() || interpreter_.beam() == BeamMode::Off) {
         return;
     }
-    held_ = state_;
-    state_ = State::Door;
-    motion_.hold();
-    settle();
+    beam_stopped_ = !beam_stopped_;
+    if (!beam_stopped_) {
+        out_ += "[MSG:Restoring spindle]\r\n";
+    }
+    const bool lit =
+        !beam_stopped_ && (interpreter_.beam() == BeamMode::Constant || !settings_.is_on(32));
+    begin_beam(lit ? motion_.overrides().put_out(interpreter_.spindle_speed()) : 0.0);
 }
 
 void GrblMachine::jog_cancel() {
@@ -108,22 +137,10 @@ void GrblMachine::jog_cancel() {
     }
 }
 
-void GrblMachine::soft_reset() {
-    const bool homing = state_ == State::Home;
-    const bool moving = !motion_.standing() || homing;
-    const bool was_locked = state_ == State::Alarm || state_ == State::Sleep;
-    expose(now_s_);
-    clear_all();
-    state_ = was_locked ? State::Alarm : State::Idle;
-    if (moving) {
-        set_alarm(homing ? kResetWhileHoming : kResetWhileMoving);
-    }
-    greet();
-}
-
 void GrblMachine::adjust_override(unsigned char byte) {
     constexpr std::array<int, 5> kSteps{0, 10, -10, 1, -1};
     constexpr std::array<int, 3> kRapids{100, 50, 25};
+    const std::array<int, 3> before = override_percent_;
     const auto step = [&](int& percent, unsigned char first) {
         const int change = kSteps.at(static_cast<std::size_t>(byte - first));
         percent = change == 0 ? 100 : std::clamp(percent + change, 10, 200);
@@ -135,8 +152,10 @@ void GrblMachine::adjust_override(unsigned char byte) {
     } else if (byte >= 0x99) {
         step(override_percent_[2], 0x99);
     }
-    reports_to_override_ = 0;
-    apply_overrides();
+    if (override_percent_ != before) {
+        reports_to_override_ = 0;
+        apply_overrides();
+    }
 }
 
 namespace {
@@ -187,18 +206,29 @@ std::string GrblMachine::status_report() {
         text += fmt::format("|Bf:{},{}", MotionQueue::kCapacity - motion_.size(),
                             kRxBytes - rx_.size());
     }
-    text += fmt::format("|FS:{:.0f},{:.0f}", motion_.speed_mm_per_s() * 60.0 * unit, beam_power());
-    const bool moving = state_ == State::Run || state_ == State::Jog || state_ == State::Hold;
-    if (reports_to_offset_-- <= 0) {
-        reports_to_offset_ = moving ? 29 : 9;
+    text += fmt::format("|FS:{:.{}f},{:.0f}", motion_.speed_mm_per_s() * 60.0 * unit, digits - 3,
+                        beam_power());
+    // Offset and overrides come now and then, never in the same report.
+    const bool busy = state_ != State::Idle && state_ != State::Alarm && state_ != State::Check &&
+                      state_ != State::Sleep;
+    if (reports_to_offset_ > 0) {
+        --reports_to_offset_;
+    } else {
+        reports_to_offset_ = busy ? 29 : 9;
         reports_to_override_ = std::max(reports_to_override_, 1);
         text += fmt::format("|WCO:{}", triple(offset));
-    } else if (reports_to_override_-- <= 0) {
-        reports_to_override_ = moving ? 19 : 9;
+    }
+    if (reports_to_override_ > 0) {
+        --reports_to_override_;
+    } else {
+        reports_to_override_ = busy ? 19 : 9;
         text += fmt::format("|Ov:{},{},{}", override_percent_[0], override_percent_[1],
                             override_percent_[2]);
-        if (interpreter_.beam() != BeamMode::Off) {
-            text += interpreter_.beam() == BeamMode::Constant ? "|A:S" : "|A:C";
+        const bool lit = beam_power() > 0.0;
+        if (lit || interpreter_.flood()) {
+            text += fmt::format("|A:{}{}",
+                                !lit ? "" : (interpreter_.beam() == BeamMode::Dynamic ? "C" : "S"),
+                                interpreter_.flood() ? "F" : "");
         }
     }
     return text + ">\r\n";

@@ -15,7 +15,29 @@ constexpr int kSoftLimitsNeedHoming = 10;
 
 bool is_real(int number) {
     return number == 11 || number == 12 || number == 24 || number == 25 || number == 27 ||
-           number == 30 || number == 31 || number >= 100;
+           number >= 100;
+}
+
+bool is_power(int number) {
+    return number == 30 || number == 31;
+}
+
+bool is_switch(int number) {
+    return (number >= 4 && number <= 6) || number == 13 || (number >= 20 && number <= 22) ||
+           number == 32;
+}
+
+// As it is kept: one byte, unless it is a real number.
+double stored(int number, double value) {
+    if (is_real(number) || is_power(number)) {
+        return value;
+    }
+    const double whole = std::trunc(value);
+    if (is_switch(number)) {
+        return whole != 0.0 ? 1.0 : 0.0;
+    }
+    constexpr double kByte = 256.0;
+    return std::fmod(whole, kByte);
 }
 
 }  // namespace
@@ -46,7 +68,7 @@ int GrblSettings::set(int number, double value) {
     if (number == 20 && value != 0.0 && !is_on(22)) {
         return kSoftLimitsNeedHoming;
     }
-    found->second = is_real(number) ? value : std::trunc(value);
+    found->second = stored(number, value);
     if (number == 22 && value == 0.0) {
         values_[20] = 0.0;
     }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "drivers/gcode_words.h"
 #include "drivers/sim/numbered_line.h"
 
 namespace leafcutter::drivers {
@@ -25,19 +26,6 @@ bool is_beam_command(std::string_view stripped) {
     const bool word =
         stripped.size() > 1 && stripped[0] == 'M' && stripped[1] >= '3' && stripped[1] <= '5';
     return word && (stripped.size() == 2 || stripped[2] < '0' || stripped[2] > '9');
-}
-
-// Inline power is what the simulated beam has anyway.
-std::string without_inline_word(const std::string& stripped) {
-    std::string result = stripped;
-    if (is_beam_command(stripped)) {
-        const std::size_t at = result.find('I');
-        if (at != std::string::npos) {
-            const std::size_t end = result.find_first_not_of("0123456789", at + 1);
-            result.erase(at, end == std::string::npos ? end : end - at);
-        }
-    }
-    return result;
 }
 
 }  // namespace

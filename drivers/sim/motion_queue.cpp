@@ -33,6 +33,15 @@ double square(double value) {
 
 }  // namespace
 
+// Grbl 1.1 spindle_control.c, spindle_compute_pwm_value().
+double MotionOverrides::put_out(double s) const {
+    const double wanted = s * power;
+    if (least_s >= most_s || wanted >= most_s) {
+        return most_s;
+    }
+    return wanted > 0.0 ? std::max(wanted, least_s) : 0.0;
+}
+
 double MotionQueue::nominal(const Block& block) const {
     if (block.move.rapid) {
         return block.top_mm_per_s * overrides_.rapid;
@@ -209,7 +218,7 @@ std::optional<double> MotionQueue::running_power() const {
         return 0.0;
     }
     const double scale = block.move.scale_power ? speed_ / block.programmed_mm_per_s : 1.0;
-    return block.move.power_s * overrides_.power * scale;
+    return overrides_.put_out(block.move.power_s * scale);
 }
 
 void MotionQueue::begin_piece(double now_s) {
@@ -233,7 +242,7 @@ void MotionQueue::end_piece(double now_s, BeamLog& log) {
     piece.t1_s = now_s;
     piece.x1_mm = position_mm_[0] - block.move.work_offset_mm[0];
     piece.y1_mm = position_mm_[1] - block.move.work_offset_mm[1];
-    piece.s = block.move.power_s * overrides_.power;
+    piece.s = overrides_.put_out(block.move.power_s);
     piece.feed_mm_per_min = block.programmed_mm_per_s * 60.0;
     piece.s_mean = piece.s;
     const double seconds = piece.t1_s - piece.t0_s;

@@ -9,7 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <deque>
-#include <functional>
+#include <limits>
 #include <optional>
 
 #include "drivers/sim/beam_log.h"
@@ -40,6 +40,12 @@ struct MotionOverrides {
     double feed = 1.0;
     double rapid = 1.0;
     double power = 1.0;
+    // $31 and $30: S from above 0 is put out as at least the one and at most the other.
+    double least_s = 0.0;
+    double most_s = std::numeric_limits<double>::max();
+
+    // What is put out for this S.
+    double put_out(double s) const;
 };
 
 class MotionQueue {
@@ -53,6 +59,7 @@ public:
     // Returns false, and queues nothing, for a move of no length. Needs !full().
     bool push(const Move& move, const MotionLimits& limits);
 
+    const MotionOverrides& overrides() const { return overrides_; }
     void set_overrides(const MotionOverrides& overrides, double now_s, BeamLog& log);
 
     // Slows down to a stand and stays there until release().

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -40,7 +41,7 @@ private:
 struct SimGrblOptions {
     SimHostOptions host;
     GrblMachineOptions machine;
-    std::optional<Fault> fault;
+    std::vector<Fault> faults;
 };
 
 struct SimLineOptions {
@@ -81,7 +82,7 @@ void set_grbl_option(std::string_view key, std::string_view value, SimGrblOption
     } else if (key == "height") {
         options.machine.bed_height_mm = read_number(key, value);
     } else if (key == "fault") {
-        options.fault = parse_fault(value);
+        options.faults = parse_faults(value);
     } else if (!set_host_option(key, value, options.host)) {
         refuse(key, "width, height, fault");
     }
@@ -122,7 +123,7 @@ std::unique_ptr<Transport> open_line_machine(std::unique_ptr<SimMachine> machine
 std::unique_ptr<Transport> open_simulated_grbl(std::string_view query) {
     const auto options = read_options<SimGrblOptions>(query, set_grbl_option);
     return std::make_unique<SimTransport>(
-        std::make_unique<FaultyMachine>(options.machine, options.fault), options.host);
+        std::make_unique<FaultyMachine>(options.machine, options.faults), options.host);
 }
 
 std::unique_ptr<Transport> open_simulated_marlin(std::string_view query) {

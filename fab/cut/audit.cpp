@@ -139,11 +139,6 @@ bool turns_laser_on(std::string_view gcode) {
 BurnAudit audit_burn(const CutProgram& plan, std::span<const BurntSegment> burnt) {
     std::vector<Segment> planned;
     BurnAudit audit;
-    for (const CutPath& path : plan.paths) {
-        for (std::size_t i = 1; i < path.points.size(); ++i) {
-            planned.push_back({path.points[i - 1], path.points[i]});
-        }
-    }
     std::vector<Segment> done;
     done.reserve(burnt.size());
     for (const BurntSegment& segment : burnt) {
@@ -152,9 +147,12 @@ BurnAudit audit_burn(const CutProgram& plan, std::span<const BurntSegment> burnt
     audit.burnt_mm = total_length(done);
     Eigen::Vector2d at = Eigen::Vector2d::Zero();
     for (const Motion& motion : motions(plan, MachineProfile{})) {
-        audit.planned_mm += motion.burns ? (motion.to - at).norm() : 0.0;
+        if (motion.burns) {
+            planned.push_back({at, motion.to});
+        }
         at = motion.to;
     }
+    audit.planned_mm = total_length(planned);
     if (done.empty() || planned.empty()) {
         // Nothing to compare with: everything there is deviates, by as much as the sheet is large.
         const double far_mm = std::hypot(plan.size.width_mm, plan.size.height_mm);

@@ -1,5 +1,6 @@
 // Holds a burn against its plan: what a machine (simulated, or read back from G-code) burnt,
-// against the sheet's outlines and marks.
+// against the sheet's outlines and marks. Lead-ins and over-cuts are planned burns; a tab that is
+// burnt is a deviation.
 
 #pragma once
 

@@ -1,6 +1,9 @@
 #include "fab/cut/motion.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "fab/cut/path_walk.h"
 
 namespace leafcutter::fab {
 
@@ -9,16 +12,57 @@ namespace {
 // Half the last digit of a program: a move shorter than this is no move.
 constexpr double kNoMoveMm = 5e-4;
 
-void add_pass(const CutPath& path,
-              const LaserSettings& settings,
-              bool backward,
-              std::vector<Motion>& out) {
-    const std::size_t count = path.points.size();
-    for (std::size_t i = 1; i < count; ++i) {
-        const Eigen::Vector2d& to = path.points[backward ? count - 1 - i : i];
-        out.push_back({to, settings.feed_mm_per_min, true, path.operation});
+class MotionList {
+public:
+    MotionList(const CutProgram& program, const MachineProfile& machine)
+        : program_(program), machine_(machine) {}
+
+    void add(const CutPath& path) {
+        const LaserSettings& settings = settings_of(program_, path.operation);
+        const bool closed = path.points.front() == path.points.back();
+        const std::vector<Polyline> runs = burnt_runs(path);
+        go_to(path.lead_in.value_or(path.points.front()), path.operation);
+        if (path.lead_in) {
+            burn({*path.lead_in, path.points.front()}, settings, path.operation);
+        }
+        for (int pass = 0; pass < std::max(1, settings.passes); ++pass) {
+            const bool backward = !closed && pass % 2 == 1;
+            for (std::size_t i = 0; i < runs.size(); ++i) {
+                Polyline run = runs[backward ? runs.size() - 1 - i : i];
+                if (backward) {
+                    std::reverse(run.begin(), run.end());
+                }
+                go_to(run.front(), path.operation);
+                burn(run, settings, path.operation);
+            }
+        }
+        if (closed && path.over_cut_mm > 0.0) {
+            burn(stretch(path.points, 0.0, path.over_cut_mm), settings, path.operation);
+        }
     }
-}
+
+    void go_to(const Eigen::Vector2d& to, Operation operation) {
+        if ((to - at_).norm() > kNoMoveMm) {
+            moves_.push_back({to, machine_.rapid_mm_per_min, false, operation});
+            at_ = to;
+        }
+    }
+
+    std::vector<Motion> take() { return std::move(moves_); }
+
+private:
+    void burn(const Polyline& run, const LaserSettings& settings, Operation operation) {
+        for (std::size_t i = 1; i < run.size(); ++i) {
+            moves_.push_back({run[i], settings.feed_mm_per_min, true, operation});
+        }
+        at_ = run.back();
+    }
+
+    const CutProgram& program_;
+    const MachineProfile& machine_;
+    Eigen::Vector2d at_ = Eigen::Vector2d::Zero();
+    std::vector<Motion> moves_;
+};
 
 }  // namespace
 
@@ -35,26 +79,14 @@ const LaserSettings& settings_of(const CutProgram& program, Operation operation)
 }
 
 std::vector<Motion> motions(const CutProgram& program, const MachineProfile& machine) {
-    std::vector<Motion> out;
-    Eigen::Vector2d at = Eigen::Vector2d::Zero();
+    MotionList list(program, machine);
     for (const CutPath& path : program.paths) {
-        if (path.points.size() < 2) {
-            continue;
+        if (path.points.size() > 1) {
+            list.add(path);
         }
-        if ((path.points.front() - at).norm() > kNoMoveMm) {
-            out.push_back({path.points.front(), machine.rapid_mm_per_min, false, path.operation});
-        }
-        const LaserSettings& settings = settings_of(program, path.operation);
-        const bool closed = path.points.front() == path.points.back();
-        for (int pass = 0; pass < std::max(1, settings.passes); ++pass) {
-            add_pass(path, settings, !closed && pass % 2 == 1, out);
-        }
-        at = out.back().to;
     }
-    if (at.norm() > kNoMoveMm) {
-        out.push_back({Eigen::Vector2d::Zero(), machine.rapid_mm_per_min, false, Operation::Cut});
-    }
-    return out;
+    list.go_to(Eigen::Vector2d::Zero(), Operation::Cut);
+    return list.take();
 }
 
 }  // namespace leafcutter::fab

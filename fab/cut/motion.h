@@ -21,7 +21,8 @@ struct Motion {
 const LaserSettings& settings_of(const CutProgram& program, Operation operation);
 
 // From the origin through all paths and back to the origin. A pass over an open path runs against
-// the one before it; a closed path goes round again.
+// the one before it; a closed path goes round again. A lead-in is burnt before the first pass, an
+// over-cut after the last; tabs are rapids.
 std::vector<Motion> motions(const CutProgram& program, const MachineProfile& machine);
 
 }  // namespace leafcutter::fab

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "fab/clipper_paths.h"
+#include "fab/cut/cut_contours.h"
 #include "fab/cut/cut_order.h"
 #include "fab/cut/estimate.h"
 #include "fab/nest/shape.h"
@@ -94,28 +95,6 @@ Polyline placed(const Polyline& points, const Placement& placement) {
     return out;
 }
 
-void add_piece(const Piece& piece,
-               const Placement& placement,
-               double kerf_mm,
-               PathCollector& collector) {
-    for (const Mark& mark : piece.marks) {
-        if (!mark.path.empty()) {
-            collector.add(mark.operation, placed(mark.path, placement), piece.id);
-        }
-        if (!mark.text.empty()) {
-            for (const Polyline& stroke : mark_strokes(mark)) {
-                collector.add(mark.operation, placed(stroke, placement), piece.id);
-            }
-        }
-    }
-    for (const Polyline& slit : piece.cuts) {
-        collector.add(Operation::Cut, placed(slit, placement), piece.id);
-    }
-    for (const Polyline& path : kerf_paths(placed(piece.outline, placement), kerf_mm)) {
-        collector.add(Operation::Cut, path, piece.id);
-    }
-}
-
 std::map<std::string_view, const Piece*> by_id(std::span<const Piece> pieces) {
     std::map<std::string_view, const Piece*> index;
     for (const Piece& piece : pieces) {
@@ -124,13 +103,93 @@ std::map<std::string_view, const Piece*> by_id(std::span<const Piece> pieces) {
     return index;
 }
 
+// Everything on a sheet, before there is any order in it.
+class SheetContent {
+public:
+    SheetContent(const Sheet& sheet, std::span<const Piece> pieces, double kerf_mm) {
+        const std::map<std::string_view, const Piece*> index = by_id(pieces);
+        for (const Placement& placement : sheet.placements) {
+            const auto piece = index.find(placement.piece);
+            if (piece == index.end()) {
+                throw geometry::Error(geometry::ErrorKind::BadOption, "unknown-piece",
+                                      fmt::format("sheet {}: there is no piece {} to cut", sheet.id,
+                                                  placement.piece));
+            }
+            add(*piece->second, placement, kerf_mm);
+        }
+    }
+
+    std::vector<CutPath> take_marks(Operation operation) { return marks_.take(operation); }
+
+    CutContours take_contours() {
+        CutContours contours;
+        contours.inner = inner_.take(Operation::Cut);
+        contours.outer = outer_.take(Operation::Cut);
+        contours.outlines = std::move(outlines_);
+        contours.marks = std::move(lines_);
+        return contours;
+    }
+
+private:
+    void add(const Piece& piece, const Placement& placement, double kerf_mm) {
+        for (const Mark& mark : piece.marks) {
+            if (!mark.path.empty()) {
+                add_mark(mark.operation, placed(mark.path, placement), piece.id);
+            }
+            if (!mark.text.empty()) {
+                for (const Polyline& stroke : mark_strokes(mark)) {
+                    add_mark(mark.operation, placed(stroke, placement), piece.id);
+                }
+            }
+        }
+        for (const Polyline& slit : piece.cuts) {
+            add_lines(placed(slit, placement), piece.id);
+            inner_.add(Operation::Cut, placed(slit, placement), piece.id);
+        }
+        outlines_.push_back(placed(piece.outline, placement));
+        for (const Polyline& path : kerf_paths(outlines_.back(), kerf_mm)) {
+            const bool hole = signed_area(path) < 0.0;
+            (hole ? inner_ : outer_).add(Operation::Cut, path, piece.id);
+        }
+    }
+
+    void add_mark(Operation operation, const Polyline& points, const std::string& piece) {
+        add_lines(points, piece);
+        marks_.add(operation, points, piece);
+    }
+
+    void add_lines(const Polyline& points, const std::string& piece) {
+        std::vector<Segment>& lines = lines_[piece];
+        for (std::size_t i = 1; i < points.size(); ++i) {
+            lines.push_back({points[i - 1], points[i]});
+        }
+    }
+
+    PathCollector marks_;
+    PathCollector inner_;
+    PathCollector outer_;
+    std::vector<Ring> outlines_;
+    std::map<std::string, std::vector<Segment>> lines_;
+};
+
+void add_paths(std::vector<CutPath> paths, CutProgram& program, Eigen::Vector2d& at) {
+    for (CutPath& path : paths) {
+        at = path.points.back();
+        program.paths.push_back(std::move(path));
+    }
+}
+
 }  // namespace
+
+double usual_over_cut_mm(const Material& material) {
+    return material.thickness_mm < 1.0 ? 0.0 : std::min(1.0, material.thickness_mm / 4.0);
+}
 
 CutProgram plan_sheet(const Sheet& sheet,
                       std::span<const Piece> pieces,
-                      const Material& material,
-                      const MachineProfile& machine,
+                      const CutSetup& setup,
                       const geometry::Context& context) {
+    const Material& material = setup.material;
     CutProgram program;
     program.sheet = sheet.id;
     program.material = material.id;
@@ -139,25 +198,21 @@ CutProgram plan_sheet(const Sheet& sheet,
     program.score = material.score;
     program.engrave = material.engrave;
 
-    const std::map<std::string_view, const Piece*> index = by_id(pieces);
-    PathCollector collector;
-    for (const Placement& placement : sheet.placements) {
-        const auto piece = index.find(placement.piece);
-        if (piece == index.end()) {
-            throw geometry::Error(
-                geometry::ErrorKind::BadOption, "unknown-piece",
-                fmt::format("sheet {}: there is no piece {} to cut", sheet.id, placement.piece));
-        }
-        add_piece(*piece->second, placement, material.kerf_mm, collector);
-    }
+    SheetContent content(sheet, pieces, material.kerf_mm);
     Eigen::Vector2d at = Eigen::Vector2d::Zero();
-    for (const Operation operation : {Operation::Engrave, Operation::Score, Operation::Cut}) {
-        for (CutPath& path : order_paths(collector.take(operation), at, context)) {
-            at = path.points.back();
-            program.paths.push_back(std::move(path));
-        }
+    for (const Operation operation : {Operation::Engrave, Operation::Score}) {
+        add_paths(order_paths(content.take_marks(operation), at, {}, context), program, at);
     }
-    const CutEstimate estimate = estimate_cut(program, machine);
+    CutWishes wishes;
+    wishes.params = setup.wishes;
+    wishes.over_cut_mm = setup.wishes.over_cut_mm.value_or(usual_over_cut_mm(material));
+    wishes.kerf_mm = material.kerf_mm;
+    wishes.cooling = cooling_of(material, setup.machine);
+    wishes.from = at;
+    PlannedCuts cuts = plan_cuts(sheet, content.take_contours(), wishes, context);
+    program.facts = cuts.facts;
+    add_paths(std::move(cuts.paths), program, at);
+    const CutEstimate estimate = estimate_cut(program, setup.machine);
     program.burn_mm = estimate.burn_mm;
     program.travel_mm = estimate.travel_mm;
     program.estimated_s = estimate.seconds;

@@ -14,10 +14,10 @@ namespace leafcutter::fab {
 // motion.
 std::string write_gcode(const CutProgram& program, const MachineProfile& machine, Dialect dialect);
 
-// True size in mm, one group per operation (engrave, score, cut).
+// True size in mm, one group per operation (engrave, score, cut), lead-ins in one of their own.
 std::string write_svg(const CutProgram& program);
 
-// DXF R12, mm, one layer per operation.
+// DXF R12, mm, one layer per operation, lead-ins on one of their own.
 std::string write_dxf(const CutProgram& program);
 
 }  // namespace leafcutter::fab

@@ -1,7 +1,10 @@
 // SVG of a sheet for laser programs. Stroke colours are those that they map to settings by habit:
 // red cuts, blue scores, black engraves (LightBurn's first layers, VisiCut's default mapping). Each
-// operation is a layer of Inkscape; each piece is one element in it, named by id and <title>.
+// operation is a layer of Inkscape; each piece is one element in it, named by id and <title>. A
+// common edge belongs to the first of its two pieces. Over-cuts are not drawn: contours stay
+// closed.
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 #include <map>
@@ -11,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "fab/cut/path_walk.h"
 #include "fab/export/formats.h"
 #include "fab/export/number.h"
 #include "fab/markup.h"
@@ -23,11 +27,19 @@ struct Layer {
     Operation operation;
     const char* name;
     const char* stroke;
+    bool lead_ins = false;
 };
 
 constexpr std::array<Layer, 3> kLayers{{{Operation::Engrave, "engrave", "#000000"},
                                         {Operation::Score, "score", "#0000ff"},
                                         {Operation::Cut, "cut", "#ff0000"}}};
+
+// Apart from the contours, for programs that make their own.
+constexpr Layer kLeadIns{Operation::Cut, "lead-in", "#ff0000", true};
+
+std::vector<Polyline> lead_run(const CutPath& path) {
+    return {{*path.lead_in, path.points.front()}};
+}
 
 // Sheets have y up, SVG has y down.
 void add_run(const Polyline& points, double height_mm, std::string& out) {
@@ -46,11 +58,12 @@ struct Element {
     std::vector<const CutPath*> paths;
 };
 
-std::vector<Element> elements_of(const CutProgram& program, Operation operation) {
+std::vector<Element> elements_of(const CutProgram& program, const Layer& layer) {
     std::vector<Element> elements;
     std::map<std::string_view, std::size_t> place_of;
     for (const CutPath& path : program.paths) {
-        if (path.operation != operation || path.points.size() < 2) {
+        if (path.operation != layer.operation || path.points.size() < 2 ||
+            (layer.lead_ins && !path.lead_in)) {
             continue;
         }
         const auto [place, is_new] = place_of.emplace(path.piece, elements.size());
@@ -67,12 +80,14 @@ void add_layer(const CutProgram& program, const Layer& layer, std::string& out) 
                    "<g id=\"{0}\" inkscape:groupmode=\"layer\" inkscape:label=\"{0}\" "
                    "fill=\"none\" stroke=\"{1}\" stroke-width=\"0.1\">\n",
                    layer.name, layer.stroke);
-    for (const Element& element : elements_of(program, layer.operation)) {
+    for (const Element& element : elements_of(program, layer)) {
         const std::string piece = escaped(element.piece);
         fmt::format_to(std::back_inserter(out), "<path id=\"{}-{}\" data-piece=\"{}\" d=\"",
                        layer.name, piece, piece);
         for (const CutPath* path : element.paths) {
-            add_run(path->points, program.size.height_mm, out);
+            for (const Polyline& run : layer.lead_ins ? lead_run(*path) : drawn_runs(*path)) {
+                add_run(run, program.size.height_mm, out);
+            }
         }
         fmt::format_to(std::back_inserter(out), "\"><title>{}, {}</title></path>\n", piece,
                        layer.name);
@@ -94,6 +109,10 @@ std::string write_svg(const CutProgram& program) {
         width, height, escaped(program.job), program.sheet, escaped(program.material));
     for (const Layer& layer : kLayers) {
         add_layer(program, layer, out);
+    }
+    if (std::any_of(program.paths.begin(), program.paths.end(),
+                    [](const CutPath& path) { return path.lead_in.has_value(); })) {
+        add_layer(program, kLeadIns, out);
     }
     return out + "</svg>\n";
 }

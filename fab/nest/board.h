@@ -14,7 +14,7 @@ namespace leafcutter::fab {
 // Sheet, rotation and place of a part's origin.
 struct Position {
     int bin = 0;
-    int turn = 0;  // Index of the part's allowed rotations; 0 if it turns freely.
+    int turn = 0;  // Index into the part's list of rotations; 0 if it turns freely.
     double angle_deg = 0.0;
     double x = 0.0;
     double y = 0.0;

@@ -22,12 +22,9 @@ constexpr double kToleranceMm = 1e-6;
     throw geometry::Error(geometry::ErrorKind::SelfCheck, "nest-proof", "nest: " + message);
 }
 
-void check_rotation(const Placement& placement, const std::vector<double>& allowed) {
-    const bool fine =
-        allowed.empty() || std::any_of(allowed.begin(), allowed.end(), [&](double angle) {
-            return std::abs(std::remainder(placement.rotation_deg - angle, 360.0)) < 1e-9;
-        });
-    if (!fine || placement.mirrored) {
+void check_rotation(const Placement& placement, const Rotations& allowed) {
+    constexpr double kToleranceDeg = 1e-9;
+    if (!allowed.allows(placement.rotation_deg, kToleranceDeg) || placement.mirrored) {
         fail(fmt::format("piece {} lies at a rotation that is not allowed", placement.piece));
     }
 }
@@ -45,7 +42,6 @@ using PieceIndex = std::map<std::string_view, const Piece*>;
 
 // Smallest gap on a sheet, infinite for a single piece.
 double check_sheet(const Sheet& sheet, const PieceIndex& index, const NestOptions& options) {
-    const std::vector<double> allowed = allowed_rotations(options);
     const double unit = exact_unit(std::max(sheet.size.width_mm, sheet.size.height_mm));
     const auto units = [&](double mm) { return std::llround(mm / unit); };
     std::vector<PlacedRing> rings;
@@ -54,7 +50,7 @@ double check_sheet(const Sheet& sheet, const PieceIndex& index, const NestOption
         if (piece == index.end()) {
             fail(fmt::format("piece {} was never asked for", placement.piece));
         }
-        check_rotation(placement, allowed);
+        check_rotation(placement, allowed_rotations(options, *piece->second));
         rings.push_back({fmt::format("piece {}", placement.piece),
                          to_whole(placed_outline(*piece->second, placement), unit)});
     }
@@ -84,7 +80,7 @@ void check_each_once(const Layout& layout, const PieceIndex& index) {
 
 }  // namespace
 
-std::vector<double> allowed_rotations(Rotation rotation) {
+Rotations allowed_rotations(Rotation rotation) {
     switch (rotation) {
         case Rotation::Free:
             return {};
@@ -98,8 +94,12 @@ std::vector<double> allowed_rotations(Rotation rotation) {
     return {0.0};
 }
 
-std::vector<double> allowed_rotations(const NestOptions& options) {
-    return options.turns_deg.empty() ? allowed_rotations(options.rotation) : options.turns_deg;
+Rotations allowed_rotations(const NestOptions& options, const Piece& piece) {
+    const auto own = options.piece_turns.find(piece.id);
+    if (own != options.piece_turns.end()) {
+        return own->second;
+    }
+    return options.turns.empty() ? allowed_rotations(options.rotation) : options.turns;
 }
 
 double prove_layout(const Layout& layout,

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "fab/layout.h"
 #include "fab/nest/nest.h"
@@ -18,8 +17,7 @@ double prove_layout(const Layout& layout,
                     std::span<const Piece* const> pieces,
                     const NestOptions& options);
 
-// The rotations of a choice; empty means any.
-std::vector<double> allowed_rotations(Rotation rotation);
-std::vector<double> allowed_rotations(const NestOptions& options);
+Rotations allowed_rotations(Rotation rotation);
+Rotations allowed_rotations(const NestOptions& options, const Piece& piece);
 
 }  // namespace leafcutter::fab

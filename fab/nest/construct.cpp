@@ -105,8 +105,8 @@ private:
     }
 
     std::vector<double> first_angles(const NestShape& shape) const {
-        if (!options_.allowed_deg.empty()) {
-            return options_.allowed_deg;
+        if (!shape.allowed_deg.empty()) {
+            return shape.allowed_deg.samples();
         }
         std::vector<double> angles;
         constexpr double kSameDeg = 0.3;
@@ -131,7 +131,7 @@ private:
         for (const double angle : angles) {
             try_angle(sheet, shape, angle, best);
         }
-        if (!options_.allowed_deg.empty()) {
+        if (!shape.allowed_deg.empty()) {
             return best;
         }
         if (!best && sheet.outlines.size() == 0) {

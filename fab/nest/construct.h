@@ -19,9 +19,8 @@ namespace leafcutter::fab {
 struct HeapOptions {
     Eigen::Vector2d extent = Eigen::Vector2d::Zero();
     double gap_mm = 0.0;
-    double cell_mm = 1.0;             // Of the search raster; results are exact all the same.
-    std::vector<double> allowed_deg;  // Empty: any rotation.
-    double top_weight = 0.0;          // 0: lowest centre of gravity; 1: lowest top.
+    double cell_mm = 1.0;     // Of the search raster; results are exact all the same.
+    double top_weight = 0.0;  // 0: lowest centre of gravity; 1: lowest top.
 };
 
 struct Laid {

@@ -40,7 +40,7 @@ bool alike(const NestPart& a, const NestPart& b) {
 void turn_like(const NestPart& part, double angle_deg, Position& position) {
     if (part.turns_freely()) {
         position.turn = 0;
-        position.angle_deg = angle_deg;
+        position.angle_deg = part.allowed_deg.nearest(angle_deg);
         return;
     }
     double least = 1e9;

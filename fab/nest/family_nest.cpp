@@ -35,7 +35,7 @@ NestOptions nest_options(const NestingParams& params, const Batch& batch, double
     options.spacing_mm = params.spacing_mm;
     options.margin_mm = params.margin_mm;
     options.kerf_mm = batch.material.kerf_mm;
-    options.turns_deg = turns_on(batch.material, params.rotation);
+    options.turns = turns_on(batch.material, params.rotation);
     options.seed = params.seed;
     options.max_evaluations = tries_in(params.time_s * share, batch.pieces);
     options.time_s = kSlowestFactor * params.time_s * share;
@@ -171,25 +171,21 @@ PieceRoom piece_room(const Material& material, const NestingParams& params) {
     return room;
 }
 
-std::vector<double> turns_on(const Material& material, Rotation rotation) {
+Rotations turns_on(const Material& material, Rotation rotation) {
     if (!material.grain_deg) {
         return allowed_rotations(rotation);
     }
-    std::vector<double> turns;
     const bool exact = rotation == Rotation::Fixed || rotation == Rotation::Half;
     const double tolerance = exact ? 0.0 : material.grain_tolerance_deg;
+    std::vector<AngleInterval> turns;
     for (const double half : {0.0, 180.0}) {
         if (half > 0.0 && rotation == Rotation::Fixed) {
             break;
         }
-        turns.push_back(*material.grain_deg + half);
-        for (const double part : {-1.0, -0.5, 0.5, 1.0}) {
-            if (tolerance > 0.0) {
-                turns.push_back(*material.grain_deg + half + part * tolerance);
-            }
-        }
+        const double middle = *material.grain_deg + half;
+        turns.push_back({middle - tolerance, middle + tolerance});
     }
-    return turns;
+    return Rotations(std::move(turns));
 }
 
 std::int64_t tries_in(double time_s, std::span<const Piece* const> pieces) {

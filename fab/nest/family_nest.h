@@ -9,6 +9,7 @@
 #include "fab/job_params.h"
 #include "fab/layout.h"
 #include "fab/material/material.h"
+#include "fab/nest/rotations.h"
 #include "fab/strips/strip.h"
 #include "geometry/context.h"
 
@@ -30,9 +31,8 @@ struct PieceRoom {
 // Throws Error(BadOption) if nothing is left of it or the material has no sheets.
 PieceRoom piece_room(const Material& material, const NestingParams& params);
 
-// The rotations that `material` leaves of those asked for; empty: any. The search knows single
-// rotations only, so a tolerance around the grain becomes some of them.
-std::vector<double> turns_on(const Material& material, Rotation rotation);
+// The rotations that `material` leaves of those asked for.
+Rotations turns_on(const Material& material, Rotation rotation);
 
 // Places to try for these pieces in about `time_s` on an ordinary machine: work, not time, bounds a
 // search, so that equal input gives equal layouts.

@@ -52,15 +52,12 @@ public:
         shapes_.reserve(plan.part_of.size());
         for (const std::size_t part : plan.part_of) {
             shapes_.push_back(make_shape(plan.parts[part].outline));
+            shapes_.back().allowed_deg = plan.parts[part].allowed_deg.shifted(90.0);
         }
         // In a heap's frame gravity points down: the sheet turned by a quarter.
         const BoardPlan::Room& room = plan.rooms.front();
         options_.extent = {room.height, room.width};
         options_.cell_mm = raster_cell(shapes_, options_.extent);
-        options_.allowed_deg = plan.parts.front().allowed_deg;
-        for (double& angle : options_.allowed_deg) {
-            angle += 90.0;
-        }
     }
 
     void run(std::int64_t rows) {
@@ -106,7 +103,7 @@ public:
 private:
     static void turn_to(const NestPart& part, double angle_deg, Position& at) {
         at.angle_deg = std::remainder(angle_deg, 360.0);
-        for (std::size_t i = 0; i < part.allowed_deg.size(); ++i) {
+        for (std::size_t i = 0; i < part.allowed_deg.size() && !part.turns_freely(); ++i) {
             if (std::abs(std::remainder(part.allowed_deg[i] - angle_deg, 360.0)) < 1e-6) {
                 at.turn = static_cast<int>(i);
                 at.angle_deg = part.allowed_deg[i];

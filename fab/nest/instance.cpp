@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
-#include <fmt/format.h>
-
-#include "fab/nest/exact.h"
-#include "fab/nest/grow.h"
 #include "fab/nest/heap_start.h"
-#include "fab/nest/simple_ring.h"
+#include "fab/nest/instance_bins.h"
+#include "fab/nest/instance_check.h"
+#include "fab/nest/instance_proof.h"
 #include "geometry/error.h"
 
 namespace leafcutter::fab {
@@ -20,95 +17,14 @@ namespace {
 // Outlines grow by this share of the largest length, so that rounding never makes two overlap.
 constexpr double kGuard = 1e-6;
 
-// An irregular outline is handed to the search as what surrounds it, in so many cells each way.
-constexpr int kFrameCells = 4;
-
 struct Problem {
     const NestInstance& instance;
     BoardPlan plan;
-    std::vector<std::size_t> item_of;        // [copy]
-    std::vector<std::size_t> bin_of;         // [room]
-    std::vector<Eigen::Vector2d> corner_of;  // [room]: of its bounds, in the bin's coordinates.
+    std::vector<std::size_t> item_of;  // [copy]
+    Eigen::Vector2d corner;            // Of the board, in the strip's coordinates.
     double scale = 0.0;
     double grow = 0.0;
 };
-
-double largest_length(const NestInstance& instance) {
-    double scale = instance.strip_height;
-    for (const InstanceItem& item : instance.items) {
-        scale = std::max(scale, bounds(item.outline).size().norm());
-    }
-    for (const InstanceBin& bin : instance.bins) {
-        scale = std::max(scale, bounds(bin.outline).size().maxCoeff());
-    }
-    return scale;
-}
-
-void check_instance(const NestInstance& instance) {
-    const auto refuse = [&](const std::string& what) {
-        throw geometry::Error(geometry::ErrorKind::BadOption, "bad-instance", what);
-    };
-    if (instance.items.empty()) {
-        refuse("items: there is nothing to nest");
-    }
-    if (instance.strip_height <= 0.0 && instance.bins.empty()) {
-        refuse("strip_height or bins: there is nothing to nest on");
-    }
-    for (const InstanceItem& item : instance.items) {
-        if (const std::string fault = ring_fault(item.outline); !fault.empty()) {
-            refuse(fmt::format("item {}: {}", item.id, fault));
-        }
-    }
-    for (const InstanceBin& bin : instance.bins) {
-        if (const std::string fault = ring_fault(bin.outline); !fault.empty()) {
-            refuse(fmt::format("bin {}: {}", bin.id, fault));
-        }
-        for (const InstanceZone& zone : bin.zones) {
-            if (const std::string fault = ring_fault(zone.outline); !fault.empty()) {
-                refuse(fmt::format("bin {}: a zone: {}", bin.id, fault));
-            }
-        }
-    }
-}
-
-Ring shifted(const Ring& ring, const Eigen::Vector2d& by) {
-    Ring out = ring;
-    for (Eigen::Vector2d& point : out) {
-        point += by;
-    }
-    return out;
-}
-
-void add_fixed(BoardPlan& plan, const Ring& ring, int bin, const InstanceZone* zone) {
-    BoardPlan::Fixed fixed;
-    const NestPart part = make_part(ring, 0.0, {0.0});
-    turn_part(part, 0.0, fixed.shape);
-    // Back to where it lies: the part is about its own origin.
-    const auto dx = static_cast<float>(part.origin.x());
-    const auto dy = static_cast<float>(part.origin.y());
-    shift_part(fixed.shape, dx, dy);
-    fixed.bin = bin;
-    fixed.solid = zone == nullptr || zone->quality <= 0;
-    fixed.quality = zone == nullptr ? 0 : zone->quality;
-    plan.fixed.push_back(std::move(fixed));
-}
-
-void add_bin(Problem& problem, std::size_t index) {
-    const InstanceBin& bin = problem.instance.bins[index];
-    const Box box = bounds(bin.outline);
-    const Eigen::Vector2d size = box.size();
-    const int room = static_cast<int>(problem.plan.rooms.size());
-    problem.plan.rooms.push_back({size.x(), size.y()});
-    problem.bin_of.push_back(index);
-    problem.corner_of.push_back(box.low);
-    for (const Ring& ring :
-         outside_of(shifted(bin.outline, -box.low), Eigen::Vector2d::Zero(), size, kFrameCells)) {
-        add_fixed(problem.plan, ring, room, nullptr);
-    }
-    for (const InstanceZone& zone : bin.zones) {
-        add_fixed(problem.plan, shifted(zone.outline, -box.low), room, &zone);
-    }
-}
 
 void add_strip(Problem& problem) {
     const NestInstance& instance = problem.instance;
@@ -118,18 +34,16 @@ void add_strip(Problem& problem) {
         width += item.demand * (bounds(item.outline).size().norm() + problem.scale * 1e-3);
     }
     problem.plan.rooms.push_back({width, instance.strip_height + 2.0 * problem.grow});
-    problem.bin_of.push_back(0);
-    problem.corner_of.emplace_back(-problem.grow, -problem.grow);
+    problem.corner = Eigen::Vector2d(-problem.grow, -problem.grow);
 }
 
 Problem make_problem(const NestInstance& instance) {
-    Problem problem{instance, {}, {}, {}, {}, largest_length(instance), 0.0};
+    Problem problem{instance, {}, {}, {}, largest_length(instance), 0.0};
     problem.grow = kGuard * problem.scale;
     for (std::size_t i = 0; i < instance.items.size(); ++i) {
         const InstanceItem& item = instance.items[i];
         NestPart part = make_part(item.outline, problem.grow, item.allowed_deg);
-        part.min_quality = item.min_quality.value_or(std::numeric_limits<int>::max());
-        std::vector<TurnedPart> turned(item.allowed_deg.size());
+        std::vector<TurnedPart> turned(item.allowed_deg.is_list() ? item.allowed_deg.size() : 0);
         for (std::size_t k = 0; k < turned.size(); ++k) {
             turn_part(part, item.allowed_deg[k], turned[k]);
         }
@@ -140,15 +54,7 @@ Problem make_problem(const NestInstance& instance) {
             problem.item_of.push_back(i);
         }
     }
-    if (instance.strip_height > 0.0) {
-        add_strip(problem);
-        return problem;
-    }
-    for (std::size_t i = 0; i < instance.bins.size(); ++i) {
-        for (int copy = 0; copy < instance.bins[i].stock; ++copy) {
-            add_bin(problem, i);
-        }
-    }
+    add_strip(problem);
     return problem;
 }
 
@@ -158,108 +64,8 @@ InstancePlacement placement_of(const Problem& problem, std::size_t copy, const P
     out.rotation_deg = at.angle_deg;
     const Eigen::Vector2d& origin = problem.plan.part(copy).origin;
     const Ring turned = moved({origin}, {at.angle_deg, Eigen::Vector2d::Zero()});
-    out.offset = Eigen::Vector2d(at.x, at.y) - turned.front() +
-                 problem.corner_of[static_cast<std::size_t>(at.bin)];
+    out.offset = Eigen::Vector2d(at.x, at.y) - turned.front() + problem.corner;
     return out;
-}
-
-Ring placed_ring(const NestInstance& instance, const InstancePlacement& placement) {
-    return moved(instance.items[placement.item].outline,
-                 {placement.rotation_deg, placement.offset});
-}
-
-double bin_area(const InstanceBin& bin) {
-    double area = std::abs(signed_area(bin.outline));
-    for (const InstanceZone& zone : bin.zones) {
-        area -= zone.quality <= 0 ? std::abs(signed_area(zone.outline)) : 0.0;
-    }
-    return area;
-}
-
-void prove_strip(const NestInstance& instance,
-                 InstanceSolution& solution,
-                 double unit,
-                 std::span<const PlacedRing> rings) {
-    const auto far = std::numeric_limits<std::int64_t>::max();
-    prove_within(rings, {0, 0}, {far, std::llround(std::floor(instance.strip_height / unit))});
-    std::int64_t right = 0;
-    for (const PlacedRing& placed : rings) {
-        for (const WholePoint& p : placed.ring) {
-            right = std::max(right, p.x);
-        }
-    }
-    solution.strip_width = static_cast<double>(right) * unit;
-}
-
-void prove_bin(const NestInstance& instance,
-               const InstanceLayout& layout,
-               double unit,
-               std::span<const PlacedRing> rings) {
-    const InstanceBin& bin = instance.bins[*layout.bin];
-    prove_inside(rings, to_whole(bin.outline, unit));
-    for (const InstanceZone& zone : bin.zones) {
-        const PlacedRing obstacle{
-            fmt::format("a zone of quality {} of bin {}", zone.quality, bin.id),
-            to_whole(zone.outline, unit)};
-        for (std::size_t i = 0; i < rings.size(); ++i) {
-            const InstanceItem& item = instance.items[layout.placed[i].item];
-            const bool binds =
-                zone.quality <= 0 || !item.min_quality || *item.min_quality > zone.quality;
-            if (binds) {
-                prove_clear(rings.subspan(i, 1), obstacle);
-            }
-        }
-    }
-}
-
-void prove_rotation(const InstanceItem& item, double rotation_deg) {
-    const bool fine = item.allowed_deg.empty() ||
-                      std::any_of(item.allowed_deg.begin(), item.allowed_deg.end(),
-                                  [&](double angle) { return angle == rotation_deg; });
-    if (!fine) {
-        throw geometry::Error(
-            geometry::ErrorKind::SelfCheck, "nest-proof",
-            fmt::format("nest: item {} lies at a rotation that is not allowed", item.id));
-    }
-}
-
-// Fills in what the proof finds: gap, width, densities. Throws Error(SelfCheck).
-void prove(const Problem& problem, InstanceSolution& solution) {
-    const NestInstance& instance = problem.instance;
-    double smallest = std::numeric_limits<double>::infinity();
-    double area = 0.0;
-    double room = 0.0;
-    for (InstanceLayout& layout : solution.layouts) {
-        double extent = 0.0;
-        for (const InstancePlacement& placement : layout.placed) {
-            for (const Eigen::Vector2d& p : placed_ring(instance, placement)) {
-                extent = std::max(extent, p.cwiseAbs().maxCoeff());
-            }
-        }
-        const double unit = exact_unit(std::max(extent, problem.scale));
-        std::vector<PlacedRing> rings;
-        double used = 0.0;
-        for (const InstancePlacement& placement : layout.placed) {
-            const InstanceItem& item = instance.items[placement.item];
-            prove_rotation(item, placement.rotation_deg);
-            rings.push_back({fmt::format("item {}", item.id),
-                             to_whole(placed_ring(instance, placement), unit)});
-            used += std::abs(signed_area(item.outline));
-        }
-        smallest = std::min(smallest, prove_apart(rings, 0) * unit);
-        if (layout.bin) {
-            prove_bin(instance, layout, unit, rings);
-        } else {
-            prove_strip(instance, solution, unit, rings);
-        }
-        const double whole = layout.bin ? bin_area(instance.bins[*layout.bin])
-                                        : solution.strip_width * instance.strip_height;
-        layout.density = used / whole;
-        area += used;
-        room += whole;
-    }
-    solution.density = room > 0.0 ? area / room : 0.0;
-    solution.smallest_gap = std::isfinite(smallest) ? smallest : 0.0;
 }
 
 InstanceSolution solution_of(const Problem& problem, const Packing& packing) {
@@ -272,15 +78,12 @@ InstanceSolution solution_of(const Problem& problem, const Packing& packing) {
             continue;
         }
         InstanceLayout& layout = layouts[at.bin];
-        if (!problem.instance.bins.empty()) {
-            layout.bin = problem.bin_of[static_cast<std::size_t>(at.bin)];
-        }
         layout.placed.push_back(placement_of(problem, copy, at));
     }
     for (auto& [bin, layout] : layouts) {
         solution.layouts.push_back(std::move(layout));
     }
-    prove(problem, solution);
+    prove_solution(problem.instance, solution);
     return solution;
 }
 
@@ -413,8 +216,11 @@ InstanceSolution solve(const NestInstance& instance,
                        const geometry::Context& context,
                        const std::function<void(const InstanceSolution&)>& improved) {
     check_instance(instance);
+    if (!instance.bins.empty()) {
+        return solve_bins(instance, options, context, improved);
+    }
     Problem problem = make_problem(instance);
-    const bool banded = instance.bins.empty() && is_banded(problem.plan) && all_fit(problem.plan);
+    const bool banded = is_banded(problem.plan) && all_fit(problem.plan);
     Packing packing = banded ? banded_layout(problem.plan, options, context)
                              : first_packing(problem.plan, options.seed, context);
     InstanceSolution none;

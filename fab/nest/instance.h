@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fab/nest/compaction.h"
+#include "fab/nest/rotations.h"
 #include "fab/strips/strip.h"
 #include "geometry/context.h"
 
@@ -17,9 +18,9 @@ namespace leafcutter::fab {
 struct InstanceItem {
     int id = 0;
     int demand = 1;
-    Ring outline;                     // Simple, in either orientation.
-    std::vector<double> allowed_deg;  // Empty: any rotation.
-    std::optional<int> min_quality;   // None: may lie nowhere but on faultless material.
+    Ring outline;  // Simple, in either orientation.
+    Rotations allowed_deg;
+    std::optional<int> min_quality;  // None: may lie nowhere but on faultless material.
 };
 
 struct InstanceZone {

@@ -91,6 +91,25 @@ Ring shape_of(const json& shape, const std::string& where, std::vector<Ring>* ho
     refuse(fmt::format("{}: shapes of this type are not supported", where));
 }
 
+// Angles and intervals [from, to]; none: as drawn.
+Rotations rotations_of(const json& list, const std::string& where) {
+    if (!list.is_array()) {
+        refuse(fmt::format("{}: must be a list of angles or of intervals [from, to]", where));
+    }
+    std::vector<AngleInterval> intervals;
+    for (const json& entry : list) {
+        const bool pair = entry.is_array() && entry.size() == 2;
+        const double from = number(pair ? entry[0] : entry, where);
+        const double to = pair ? number(entry[1], where) : from;
+        if (from > to || std::abs(from) > 1e6 || std::abs(to) > 1e6) {
+            refuse(
+                fmt::format("{}: an interval must go from a smaller angle to a larger one", where));
+        }
+        intervals.push_back({from, to});
+    }
+    return intervals.empty() ? Rotations{0.0} : Rotations(std::move(intervals));
+}
+
 InstanceItem item_of(const json& entry, std::size_t index) {
     const std::string where = fmt::format("items[{}]", index);
     InstanceItem item;
@@ -98,12 +117,8 @@ InstanceItem item_of(const json& entry, std::size_t index) {
     item.demand = whole(member(entry, "demand", where), where + ".demand", 0, 1'000'000);
     item.outline = shape_of(member(entry, "shape", where), where + ".shape", nullptr);
     if (entry.contains("allowed_orientations") && !entry.at("allowed_orientations").is_null()) {
-        for (const json& angle : entry.at("allowed_orientations")) {
-            item.allowed_deg.push_back(number(angle, where + ".allowed_orientations"));
-        }
-        if (item.allowed_deg.empty()) {
-            item.allowed_deg.push_back(0.0);
-        }
+        item.allowed_deg =
+            rotations_of(entry.at("allowed_orientations"), where + ".allowed_orientations");
     }
     if (entry.contains("min_quality") && !entry.at("min_quality").is_null()) {
         item.min_quality = whole(entry.at("min_quality"), where + ".min_quality", 0, 1000);

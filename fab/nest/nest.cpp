@@ -71,7 +71,6 @@ public:
         check_options(options);
         extent_ = usable_extent(size, options);
         grow_ = (options.spacing_mm + options.kerf_mm) / 2.0 + kGapGuardMm;
-        const std::vector<double> allowed = allowed_rotations(options);
         for (const Piece* piece : pieces) {
             if (const std::string fault = ring_fault(piece->outline); !fault.empty()) {
                 throw geometry::Error(geometry::ErrorKind::BadOption, "bad-piece",
@@ -79,7 +78,8 @@ public:
             }
             // By as much as rounding may cost, a piece that only just fits doesn't.
             const Eigen::Vector2d room = extent_.array() - 4.0 * kGapGuardMm;
-            if (fitting_angle(make_shape(piece->outline), room, allowed)) {
+            if (fitting_angle(make_shape(piece->outline), room,
+                              allowed_rotations(options, *piece))) {
                 fitting_.push_back(piece);
             } else {
                 unplaced_.push_back(piece->id);
@@ -118,13 +118,11 @@ private:
         Frame frame;
         frame.quarters = quarters;
         frame.extent = quarters % 2 == 0 ? extent_ : Eigen::Vector2d(extent_.y(), extent_.x());
-        std::vector<double> allowed = allowed_rotations(options_);
-        for (double& angle : allowed) {
-            angle = std::remainder(angle - 90.0 * quarters, 360.0);
-        }
         for (std::size_t i = 0; i < fitting_.size(); ++i) {
+            const Rotations allowed =
+                allowed_rotations(options_, *fitting_[i]).shifted(-90.0 * quarters);
             frame.plan.parts.push_back(make_part(fitting_[i]->outline, grow_, allowed));
-            std::vector<TurnedPart> turned(allowed.size());
+            std::vector<TurnedPart> turned(allowed.is_list() ? allowed.size() : 0);
             for (std::size_t k = 0; k < turned.size(); ++k) {
                 turn_part(frame.plan.parts.back(), allowed[k], turned[k]);
             }

@@ -6,12 +6,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "fab/job_params.h"
 #include "fab/layout.h"
+#include "fab/nest/rotations.h"
 #include "geometry/context.h"
 
 namespace leafcutter::fab {
@@ -21,7 +24,8 @@ struct NestOptions {
     double margin_mm = 5.0;   // From the sheet's edge, after kerf.
     double kerf_mm = 0.0;
     Rotation rotation = Rotation::Free;
-    std::vector<double> turns_deg = {};  // Instead of `rotation`, unless empty.
+    Rotations turns = {};  // Instead of `rotation`, unless any.
+    std::map<std::string, Rotations, std::less<>> piece_turns = {};  // By id, instead of both.
     std::uint32_t seed = 1;
     std::int64_t max_evaluations = 400'000;  // Places tried for a piece.
     double time_s = 0.0;  // By the context's clock, from the first layout on; 0: no limit.

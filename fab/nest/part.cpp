@@ -323,7 +323,7 @@ std::vector<BandPoint> middle_line(const Ring& ring, std::size_t count) {
     return middle;
 }
 
-NestPart make_part(const Ring& outline, double grow, std::vector<double> allowed_deg) {
+NestPart make_part(const Ring& outline, double grow, Rotations allowed_deg) {
     NestPart part;
     part.outline = grown(outline, grow);
     const NestShape shape = make_shape(part.outline);

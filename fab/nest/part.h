@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include "fab/nest/rotations.h"
 #include "fab/nest/shape.h"
 
 namespace leafcutter::fab {
@@ -33,21 +34,22 @@ struct NestPart {
     std::vector<Circle> circles;    // Inscribed; the largest first, or along a band.
     std::vector<BandPoint> middle;  // Of a long thin band, from end to end; else empty.
     Eigen::Vector2d bend_centre =
-        Eigen::Vector2d::Zero();      // Of a band: of the arc it is most like.
-    std::vector<double> allowed_deg;  // Empty: any rotation.
+        Eigen::Vector2d::Zero();  // Of a band: of the arc it is most like.
+    Rotations allowed_deg;
     double area = 0.0;
     double hull_area = 0.0;
     double diameter = 0.0;  // Largest distance between two vertices.
     double width = 0.0;     // Mean width of a band of this area and perimeter.
     int min_quality = 0;    // May not touch a zone of lower quality.
 
-    bool turns_freely() const { return allowed_deg.empty(); }
+    // Turned as it moves: any rotation, or within intervals. Else the rotations are a list.
+    bool turns_freely() const { return !allowed_deg.is_list(); }
     bool is_band() const { return !middle.empty(); }
 };
 
 // `outline` is simple, with at least three vertices, in either orientation. `grow` is what is added
 // all around, never less.
-NestPart make_part(const Ring& outline, double grow, std::vector<double> allowed_deg);
+NestPart make_part(const Ring& outline, double grow, Rotations allowed_deg);
 
 // Up to `most` circles inside the ring, disjoint, about the largest that fit one after the other.
 std::vector<Circle> inscribed_circles(const Ring& ring, std::size_t most);

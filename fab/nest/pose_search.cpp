@@ -51,7 +51,8 @@ float PoseSearch::loss_of(std::size_t item, const Position& position, float boun
 void PoseSearch::random_turn(const NestPart& part, Position& position) {
     if (part.turns_freely()) {
         position.turn = 0;
-        position.angle_deg = random_.between(-180.0, 180.0);
+        position.angle_deg = part.allowed_deg.empty() ? random_.between(-180.0, 180.0)
+                                                      : part.allowed_deg.at_share(random_.unit());
         return;
     }
     const std::size_t turn = random_.below(part.allowed_deg.size());
@@ -92,7 +93,9 @@ void PoseSearch::sample_near(std::size_t item, const Position& around, Position&
     const double height = shape.high_y - shape.low_y;
     position = around;
     if (part.turns_freely()) {
-        position.angle_deg = std::remainder(around.angle_deg + 12.0 * random_.normal(), 360.0);
+        position.angle_deg = std::remainder(
+            around.angle_deg + part.allowed_deg.step(around.angle_deg, 12.0 * random_.normal()),
+            360.0);
     } else {
         random_turn(part, position);
     }
@@ -139,10 +142,14 @@ bool PoseSearch::sample_mate(std::size_t item, Position& position) {
     const double cross =
         (source.row(0).cwiseProduct(target.row(1)) - source.row(1).cwiseProduct(target.row(0)))
             .sum();
-    const double turn = std::atan2(cross, dot);
+    double turn = std::atan2(cross, dot);
     position.bin = there.bin;
     position.turn = 0;
     position.angle_deg = std::remainder(turn / kDegree + there.angle_deg, 360.0);
+    if (!a.allowed_deg.empty()) {
+        position.angle_deg = a.allowed_deg.nearest(position.angle_deg);
+        turn = (position.angle_deg - there.angle_deg) * kDegree;
+    }
     const double c = std::cos(there.angle_deg * kDegree);
     const double s = std::sin(there.angle_deg * kDegree);
     // The item's origin in the other's frame, then on the sheet.
@@ -227,7 +234,7 @@ void PoseSearch::descend(std::size_t item, Candidate& candidate, const Steps& st
         to.x += sign * axis.x * step_x;
         to.y += sign * axis.y * step_y;
         if (axis.turn) {
-            turn_about(axis.pivot, sign * step_turn, to);
+            turn_about(axis.pivot, part.allowed_deg.step(to.angle_deg, sign * step_turn), to);
         }
         return to;
     };

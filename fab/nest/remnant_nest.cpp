@@ -87,7 +87,7 @@ private:
     NestInstance instance() const {
         NestInstance problem;
         problem.name = "remnant";
-        const std::vector<double> turns = turns_on(material_, params_.rotation);
+        const Rotations turns = turns_on(material_, params_.rotation);
         for (const Piece* piece : pieces_) {
             InstanceItem item;
             item.id = static_cast<int>(problem.items.size());

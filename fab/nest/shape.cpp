@@ -153,9 +153,9 @@ NestShape make_shape(const Ring& outline) {
 
 std::optional<double> fitting_angle(const NestShape& shape,
                                     const Eigen::Vector2d& extent,
-                                    std::span<const double> allowed_deg) {
+                                    const Rotations& allowed_deg) {
     const Ring hull = convex_hull(shape.outline);
-    for (const double angle_deg : allowed_deg) {
+    for (const double angle_deg : allowed_deg.samples()) {
         if (fits(hull, angle_deg, extent)) {
             return angle_deg;
         }

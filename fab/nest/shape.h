@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "fab/nest/rotations.h"
 #include "fab/strips/strip.h"
 
 namespace leafcutter::fab {
@@ -36,6 +37,7 @@ struct NestShape {
     double width_mm = 0.0;     // Mean width of a band of this area and perimeter.
     Eigen::Vector2d centroid = Eigen::Vector2d::Zero();
     std::vector<double> lying_deg;  // Rotations that lay the shape along x, best first.
+    Rotations allowed_deg;
 };
 
 // `outline` is simple and has at least three vertices, in either orientation.
@@ -58,6 +60,6 @@ Ring moved(const Ring& ring, const Pose& pose);
 // between.
 std::optional<double> fitting_angle(const NestShape& shape,
                                     const Eigen::Vector2d& extent,
-                                    std::span<const double> allowed_deg);
+                                    const Rotations& allowed_deg);
 
 }  // namespace leafcutter::fab

@@ -51,14 +51,20 @@ std::string read_text_file(const std::string& path) {
     return text;
 }
 
-// Those that the package was made of; of an older one that doesn't say, the built-in ones.
-std::vector<fab::Material> materials_of(const AuditArguments& arguments) {
-    const auto built_in = fab::built_in_materials();
-    const std::string report = arguments.package + "/report.json";
+struct Makings {
+    std::vector<fab::Material> materials;
+    fab::MachineProfile machine;
+    fab::CutParams wishes;
+};
+
+// Those of the package; of an older one that doesn't say, what is usual.
+Makings makings_of(const AuditArguments& arguments) {
     try {
-        return read_facts(read_text_file(report)).materials;
+        const PackageFacts facts = read_facts(read_text_file(arguments.package + "/report.json"));
+        return {facts.materials, facts.machine, facts.params.cut};
     } catch (const std::exception&) {
-        return {built_in.begin(), built_in.end()};
+        const auto built_in = fab::built_in_materials();
+        return {{built_in.begin(), built_in.end()}, {}, {}};
     }
 }
 
@@ -80,12 +86,13 @@ fab::Material material_of(const fab::Sheet& sheet,
 std::vector<fab::CutProgram> plans_of(const AuditArguments& arguments) {
     const std::vector<fab::Piece> pieces =
         read_pieces(read_text_file(arguments.package + "/strips.json"));
-    const std::vector<fab::Material> materials = materials_of(arguments);
+    const Makings makings = makings_of(arguments);
     std::vector<fab::CutProgram> plans;
     for (const fab::Sheet& sheet :
          read_sheets(read_text_file(arguments.package + "/layout.json"))) {
-        plans.push_back(fab::plan_sheet(sheet, pieces, material_of(sheet, materials, arguments),
-                                        fab::MachineProfile{}));
+        plans.push_back(fab::plan_sheet(
+            sheet, pieces,
+            {material_of(sheet, makings.materials, arguments), makings.machine, makings.wishes}));
     }
     return plans;
 }

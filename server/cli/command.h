@@ -47,6 +47,7 @@ void add_nest_command(CLI::App& app, const CommonOptions& common);
 void add_materials_command(CLI::App& app, const CommonOptions& common);
 void add_recut_command(CLI::App& app, const CommonOptions& common);
 void add_audit_command(CLI::App& app, const CommonOptions& common);
+void add_burn_picture_command(CLI::App& app, const CommonOptions& common);
 void add_serve_command(CLI::App& app, const CommonOptions& common);
 void add_submit_command(CLI::App& app, const CommonOptions& common);
 void add_send_command(CLI::App& app, const CommonOptions& common);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -18,7 +19,9 @@
 #include "drivers/sim/marlin_machine.h"
 #include "drivers/sim/sim_host.h"
 #include "drivers/sim/smoothie_machine.h"
+#include "server/cli/burn_picture.h"
 #include "server/cli/command.h"
+#include "server/cli/input_file.h"
 #include "server/cli/interrupt.h"
 
 namespace leafcutter::server {
@@ -30,7 +33,9 @@ struct SimulateOptions {
     std::string pty;
     std::optional<unsigned short> tcp_port;
     std::string burn_path;
+    std::string burn_picture;
     std::string fault;
+    std::string faults_path;
     double speed = 1.0;
     std::optional<double> width_mm;
     std::optional<double> height_mm;
@@ -42,15 +47,23 @@ std::unique_ptr<drivers::SimLink> open_link(const SimulateOptions& options) {
                             : drivers::open_pty_link(options.pty);
 }
 
+std::vector<drivers::Fault> faults_of(const SimulateOptions& options) {
+    constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
+    std::vector<drivers::Fault> faults = drivers::parse_faults(options.fault);
+    if (!options.faults_path.empty()) {
+        const std::vector<std::byte> script = read_input_file(options.faults_path, kMostBytes);
+        const std::vector<drivers::Fault> more =
+            drivers::parse_faults({reinterpret_cast<const char*>(script.data()), script.size()});
+        faults.insert(faults.end(), more.begin(), more.end());
+    }
+    return faults;
+}
+
 std::unique_ptr<drivers::SimMachine> make_grbl(const SimulateOptions& options) {
     drivers::GrblMachineOptions machine;
     machine.bed_width_mm = options.width_mm.value_or(machine.bed_width_mm);
     machine.bed_height_mm = options.height_mm.value_or(machine.bed_height_mm);
-    std::optional<drivers::Fault> fault;
-    if (!options.fault.empty()) {
-        fault = drivers::parse_fault(options.fault);
-    }
-    return std::make_unique<drivers::FaultyMachine>(machine, fault);
+    return std::make_unique<drivers::FaultyMachine>(machine, faults_of(options));
 }
 
 std::unique_ptr<drivers::SimMachine> make_lihuiyu(const SimulateOptions& options) {
@@ -102,6 +115,9 @@ void run_until_interrupted(drivers::SimHost& host, const std::stop_token& interr
 }
 
 void simulate(const SimulateOptions& options) {
+    if (!options.burn_picture.empty()) {
+        check_picture_path(options.burn_picture);
+    }
     try {
         const InterruptWatch interrupt;  // Before the machine's thread.
         drivers::SimHost host(open_link(options), make_machine(options),
@@ -109,6 +125,9 @@ void simulate(const SimulateOptions& options) {
         std::printf("%s:%s\n", options.machine.c_str(), host.address().c_str());
         std::fflush(stdout);
         run_until_interrupted(host, interrupt.token());
+        if (!options.burn_picture.empty()) {
+            write_burn_picture(options.burn_picture, host.burnt());
+        }
     } catch (const std::invalid_argument& error) {
         throw UsageError(error.what());
     }
@@ -127,14 +146,18 @@ void add_simulate_command(CLI::App& app, const CommonOptions& /*common*/) {
     command->add_option("--tcp", options->tcp_port, "Port on the loopback; 0 picks a free one")
         ->excludes(pty);
     command->add_option("--burn", options->burn_path, "Where to write the beam log (JSON lines)");
+    command->add_option("--burn-picture", options->burn_picture,
+                        "Where to draw what was burnt, at the end: .svg or .png");
+    command->add_option("--faults", options->faults_path,
+                        "Of grbl: a script of faults as of --fault, one a line");
     command->add_option("--speed", options->speed,
                         "Simulated seconds per second; 0: as fast as possible");
     command->add_option(
         "--fault", options->fault,
-        "grbl: drop-ok:N corrupt-ok:N stall:N alarm:N reset:N unplug:N, at the N-th line; marlin, "
-        "smoothie: "
-        "flip-bit:N drop-line:N drop-byte:N drop-ok:N garble-ok:N double-ok:N stall:N reset:N "
-        "unplug:N; lihuiyu: "
+        "grbl: drop-byte:N double-byte:N corrupt-byte:N drop-ok:N double-ok:N corrupt-ok:N delay:N "
+        "stall:N alarm:N reset:N power:N unplug:N, at the N-th line, several with commas; marlin, "
+        "smoothie: flip-bit:N drop-line:N drop-byte:N drop-ok:N garble-ok:N double-ok:N stall:N "
+        "reset:N unplug:N, at the N-th line or answer; lihuiyu: "
         "crc:N crc-always:N busy:N stall:N mute:N power:N lose:N unplug:N, at the N-th packet");
     command->add_option("--width", options->width_mm, "Bed width in mm");
     command->add_option("--height", options->height_mm, "Bed height in mm");

@@ -33,6 +33,7 @@ constexpr Route kRoutes[] = {
     {"POST", "/api/v1/cuts/{id}/confirm-sheet", confirm_sheet},
     {"POST", "/api/v1/cuts/{id}/pause", pause_cut},
     {"POST", "/api/v1/cuts/{id}/resume", resume_cut},
+    {"POST", "/api/v1/cuts/{id}/finish", finish_cut},
     {"POST", "/api/v1/cuts/{id}/abort", abort_cut},
     {"GET", "/api/v1/devices", list_devices},
     {"GET", "/api/v1/devices/{id}", show_device},

@@ -103,6 +103,7 @@ void DeviceRunner::reset() {
         const std::scoped_lock lock(mutex_);
         may_connect_ = true;
     }
+    word_given_ = look_at_queue_ = true;
     nudged_.notify_all();
 }
 

@@ -5,11 +5,13 @@
 #include <utility>
 
 #include "drivers/lihuiyu/address.h"
+#include "server/queue/cut_beam.h"
 
 namespace leafcutter::server {
 
 DeviceFleet::DeviceFleet(Store& store, DeviceHooks hooks)
     : store_(store), hooks_(std::move(hooks)) {
+    assess_interrupted(store_);
     for (const DeviceRecord& device : store_.devices.list()) {
         const auto& doubtful = store_.interrupted_devices;
         const bool inspect =

@@ -29,6 +29,7 @@ void DeviceRunner::connect(const std::stop_token& stop) {
         disarm();
         say("");
         spdlog::info("device {}: opened {}", record_.id, record_.uri);
+        look_at_place(opened->status());
         const std::scoped_lock lock(mutex_);
         device_ = std::move(opened);
     } catch (const std::exception& error) {
@@ -38,6 +39,15 @@ void DeviceRunner::connect(const std::stop_token& stop) {
         say(error.what());
         std::unique_lock lock(mutex_);
         nudged_.wait_for(lock, stop, kPause, [this] { return plugged_in_; });
+    }
+}
+
+// Before anything moves the machine: where it stands tells what became of a cut that lost it.
+void DeviceRunner::look_at_place(const drivers::DeviceStatus& status) {
+    try {
+        note_found(store_, record_.id, status);
+    } catch (const std::exception& error) {
+        spdlog::warn("device {}: {}", record_.id, error.what());
     }
 }
 

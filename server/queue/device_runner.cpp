@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,10 +27,17 @@ CutProgress counted(const drivers::JobProgress& progress) {
             static_cast<std::int64_t>(progress.lines_acknowledged)};
 }
 
-std::string how_far(const CutRecord& cut, const drivers::JobProgress& progress) {
-    return fmt::format(
-        "sheet {}: {} of {} lines acknowledged, {} sent; cut this sheet again on fresh material",
-        cut.sheet(), progress.lines_acknowledged, progress.lines_total, progress.lines_sent);
+std::string how_far(const CutRecord& cut,
+                    const drivers::JobProgress& progress,
+                    const std::optional<BeamRecord>& beam) {
+    std::string text =
+        fmt::format("sheet {}: {} of {} lines acknowledged, {} sent; ", cut.sheet(),
+                    progress.lines_acknowledged, progress.lines_total, progress.lines_sent);
+    if (beam && beam->total_mm > 0.0) {
+        text += fmt::format("{:.1f} to {:.1f} of {:.1f} mm are burnt: finish the rest, or ",
+                            beam->least_mm, beam->most_mm, beam->total_mm);
+    }
+    return text + "cut this sheet again on fresh material";
 }
 
 // Everything a client sees of a status; equal text, nothing to tell.
@@ -108,12 +116,23 @@ void DeviceRunner::follow_cut() {
         const std::scoped_lock lock(mutex_);
         cut = current_.value();
         progress_ = counted(progress);
+        if (beam_) {
+            progress_.burnt_mm = beam_->burnt_mm();
+            progress_.burn_mm = beam_->total_mm();
+        }
+    }
+    if (beam_ && trouble_.empty() && !(trouble_ = beam_->trouble()).empty()) {
+        spdlog::error("cut {}: {}", cut.id, trouble_);
+        machine->cancel();
     }
     if (Clock::now() < next_store_try_) {
         return;
     }
     if (progress.outcome != JobOutcome::Running) {
-        settle(progress);
+        const bool done = progress.outcome == JobOutcome::Done;
+        if (done || !beam_ || beam_->has_settled(machine->status())) {
+            settle(progress);
+        }
         return;
     }
     const MachineState state = machine->status().state;
@@ -140,7 +159,10 @@ void DeviceRunner::settle(const drivers::JobProgress& progress) {
         const std::scoped_lock lock(mutex_);
         cut = current_.value();
     }
+    close_beam(progress);
     write_outcome(cut, progress);
+    ended_beam_.reset();
+    trouble_.clear();
     {
         const std::scoped_lock lock(mutex_);
         current_.reset();
@@ -150,21 +172,38 @@ void DeviceRunner::settle(const drivers::JobProgress& progress) {
     hooks_.on_cut(cut.id);
 }
 
+void DeviceRunner::close_beam(const drivers::JobProgress& progress) {
+    const std::shared_ptr<drivers::Device> machine = device();
+    if (machine) {
+        machine->watch.reset();
+    }
+    if (beam_ && progress.outcome != JobOutcome::Done) {
+        ended_beam_ = beam_->close(progress, machine ? machine->status() : drivers::DeviceStatus{});
+    }
+    beam_.reset();
+}
+
 void DeviceRunner::write_outcome(const CutRecord& cut, const drivers::JobProgress& progress) {
     if (progress.outcome == JobOutcome::Done) {
         store_.cuts.finish_sheet(cut, counted(progress));
+        forget_beam(store_, cut);
         spdlog::info("cut {}: sheet {} done", cut.id, cut.sheet());
         return;
     }
     CutState state = CutState::Failed;
     std::string reason = progress.reason;
-    if (progress.outcome == JobOutcome::Aborted) {
+    if (!trouble_.empty()) {
+        reason = trouble_;
+    } else if (progress.outcome == JobOutcome::Aborted) {
         state = CutState::Aborted;
     } else if (progress.outcome == JobOutcome::LinkLost) {
         state = CutState::Interrupted;
-        reason = fmt::format("{}; {}", progress.reason, how_far(cut, progress));
+        reason = fmt::format("{}; {}", progress.reason, how_far(cut, progress, ended_beam_));
     }
     store_.cuts.record_progress(cut.id, counted(progress));
+    if (ended_beam_) {
+        store_.cuts.record_beam(cut.id, *ended_beam_);
+    }
     store_.cuts.move(cut.id, cut.state, state, reason);
     spdlog::info("cut {}: {} {}", cut.id, to_string(state), reason);
 }
@@ -194,15 +233,31 @@ void DeviceRunner::take_up_next() {
     });
     if (armed != open.end()) {
         take_up(*armed);
-    } else if (record_.auto_start && !open.empty() && is_ready()) {
-        // The configuration speaks for the operator here; a cut between two sheets goes on first.
-        const auto begun = std::find_if(open.begin(), open.end(), [](const CutRecord& cut) {
-            return occupies_device(cut.state);
-        });
-        if (store_.cuts.arm(begun != open.end() ? *begun : open.front())) {
-            look_at_queue_ = true;
-        }
+    } else if (record_.auto_start && is_ready() && !waits_for_word()) {
+        start_next_of(open);
     }
+}
+
+// The configuration speaks for the operator here; a cut between two sheets goes on first. The rest
+// of a cut that ended early never goes by itself.
+void DeviceRunner::start_next_of(const std::vector<CutRecord>& open) {
+    const auto begun = std::find_if(
+        open.begin(), open.end(), [](const CutRecord& cut) { return occupies_device(cut.state); });
+    const auto fresh =
+        std::find_if(open.begin(), open.end(), [](const CutRecord& cut) { return !cut.is_rest(); });
+    const auto next = begun != open.end() ? begun : fresh;
+    if (next != open.end() && store_.cuts.arm(*next)) {
+        look_at_queue_ = true;
+    }
+}
+
+// Whoever stopped the last cut, or whatever did, has to be looked at before a beam comes on again.
+bool DeviceRunner::waits_for_word() const {
+    if (word_given_) {
+        return false;
+    }
+    const std::optional<CutRecord> last = store_.cuts.last_begun_on(record_.id);
+    return last && is_final(last->state) && last->state != CutState::Done;
 }
 
 void DeviceRunner::start_frame(const std::string& program) {
@@ -252,13 +307,17 @@ void DeviceRunner::fire(const CutRecord& cut) {
         current_->state = CutState::Cutting;
         refused.outcome = abort_wanted_ ? JobOutcome::Aborted : JobOutcome::Running;
     }
+    word_given_ = false;
     if (refused.outcome == JobOutcome::Running) {
         try {
             spdlog::info("cut {}: sheet {} starts on {}", cut.id, cut.sheet(), record_.id);
-            device()->start(program);
+            start_program(cut, program);
         } catch (const drivers::Refused& error) {
             refused.outcome = JobOutcome::Failed;
             refused.reason = error.what();
+        } catch (const std::system_error& error) {
+            refused.outcome = JobOutcome::Failed;
+            refused.reason = fmt::format("the cut's journal can't be written: {}", error.what());
         }
     }
     next_record_ = {};
@@ -274,6 +333,22 @@ void DeviceRunner::fire(const CutRecord& cut) {
     if (abort_now) {
         device()->cancel();
     }
+}
+
+// Nothing is sent before it is in the cut's journal. A program, or a machine, that can't be
+// followed is cut without one.
+void DeviceRunner::start_program(const CutRecord& cut, const std::string& program) {
+    const std::shared_ptr<drivers::Device> machine = device();
+    const drivers::DeviceStatus status = machine->status();
+    try {
+        if (record_.uri.find("lihuiyu") == std::string::npos) {
+            beam_ = std::make_unique<CutBeam>(store_, cut, program, status);
+            machine->watch = beam_->watch();
+        }
+    } catch (const drivers::NotTraceable& error) {
+        spdlog::warn("cut {}: its beam can't be followed: {}", cut.id, error.what());
+    }
+    machine->start(program);
 }
 
 void DeviceRunner::publish() {
@@ -326,10 +401,15 @@ void DeviceRunner::wind_down() {
             machine->stop();
             machine->run_once(kSlice);
         }
+        while (beam_ && machine->progress().outcome != JobOutcome::Done &&
+               !beam_->has_settled(machine->status())) {
+            machine->run_once(kSlice);
+        }
     } catch (const drivers::LinkLost& error) {
         spdlog::warn("device {}: {}", record_.id, error.what());
     }
     drivers::JobProgress last = machine->progress();
+    close_beam(last);
     if (last.outcome != JobOutcome::Done) {
         last.outcome = JobOutcome::LinkLost;
         last.reason = "the daemon was stopped";

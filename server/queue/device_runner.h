@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "drivers/device.h"
+#include "server/queue/cut_beam.h"
 #include "server/store/store.h"
 
 namespace leafcutter::server {
@@ -67,7 +68,10 @@ public:
     void hold();
     void resume();
     void stop();
-    void reset();  // Also lets a disconnected machine connect again.
+
+    // Also lets a disconnected machine connect again, and one that starts cuts of itself go on
+    // after a cut that ended early.
+    void reset();
 
     // Throw drivers::Refused while a cut is in work or without a link.
     void home();
@@ -86,13 +90,18 @@ private:
     void lose_link(const std::string& why);
     void settle_lost(const std::stop_token& stop);
     void disarm();
+    void look_at_place(const drivers::DeviceStatus& status);
     void step();
     void follow_cut();
     void settle(const drivers::JobProgress& progress);
+    void close_beam(const drivers::JobProgress& progress);
     void write_outcome(const CutRecord& cut, const drivers::JobProgress& progress);
     void take_up_next();
     void take_up(const CutRecord& cut);
+    void start_next_of(const std::vector<CutRecord>& open);
+    bool waits_for_word() const;
     void fire(const CutRecord& cut);
+    void start_program(const CutRecord& cut, const std::string& program);
     void start_frame(const std::string& program);
     void publish();
     void wind_down();
@@ -108,6 +117,7 @@ private:
     std::atomic<bool> look_at_queue_{true};
     std::atomic<bool> queue_changed_{false};  // What its cuts allow may have changed with it.
     std::atomic<bool> framing_{false};
+    std::atomic<bool> word_given_{false};  // By a reset since the last cut began.
 
     mutable std::mutex mutex_;  // Guards the members up to the next blank line.
     std::condition_variable_any nudged_;
@@ -124,6 +134,9 @@ private:
 
     // Of the runner's thread alone.
     std::optional<drivers::JobProgress> lost_;  // Of the cut whose link is gone, not yet on disk.
+    std::unique_ptr<CutBeam> beam_;             // Of the cut in work, if it can be followed.
+    std::optional<BeamRecord> ended_beam_;      // Its end, not yet on disk.
+    std::string trouble_;                       // Why the runner itself stopped the cut.
     Clock::time_point next_record_{};
     Clock::time_point next_store_try_{};
     Clock::time_point next_publish_{};

@@ -1,6 +1,7 @@
 #include "server/store/cut_store.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ constexpr const char* kSelect =
     "SELECT cut.ordinal, cut.id, cut.job, cut.device, cut.sheets, cut.position, cut.state, "
     "cut.version, "
     "cut.lines_total, cut.lines_sent, cut.lines_acknowledged, cut.reason, cut.created_ms, "
-    "cut.updated_ms FROM cut ";
+    "cut.updated_ms, cut.rest_of, cut.rest_sha256, cut.beam FROM cut ";
 
 std::string joined(const std::vector<int>& numbers) {
     return fmt::format("{}", fmt::join(numbers, ","));
@@ -33,6 +34,20 @@ std::vector<int> parted(const std::string& text) {
         at = comma + 1;
     }
     return numbers;
+}
+
+std::string written(const BeamRecord& beam) {
+    return fmt::format("{:.3f} {:.3f} {:.3f} {:.3f} {} {:.3f} {:.3f} {:d} {:d}", beam.least_mm,
+                       beam.likely_mm, beam.most_mm, beam.total_mm, beam.line, beam.at_mm[0],
+                       beam.at_mm[1], beam.certain, beam.position_kept);
+}
+
+std::optional<BeamRecord> beam_from(const std::string& text) {
+    BeamRecord beam;
+    std::istringstream in(text);
+    in >> beam.least_mm >> beam.likely_mm >> beam.most_mm >> beam.total_mm >> beam.line >>
+        beam.at_mm[0] >> beam.at_mm[1] >> beam.certain >> beam.position_kept;
+    return in.fail() ? std::nullopt : std::optional(beam);
 }
 
 CutRecord cut_from(SQLite::Database& database, SQLite::Statement& row) {
@@ -51,6 +66,12 @@ CutRecord cut_from(SQLite::Database& database, SQLite::Statement& row) {
     cut.reason = row.getColumn(11).getString();
     cut.created_ms = row.getColumn(12).getInt64();
     cut.updated_ms = row.getColumn(13).getInt64();
+    cut.rest_of = row.getColumn(14).getString();
+    cut.beam = beam_from(row.getColumn(16).getString());
+    if (cut.is_rest()) {
+        cut.program_sha256 = row.getColumn(15).getString();
+        return cut;
+    }
     SQLite::Statement program(database,
                               "SELECT program_sha256 FROM sheet WHERE job = ? AND number = ?");
     program.bind(1, cut.job);
@@ -192,6 +213,46 @@ void count_sheet_as_cut(SQLite::Database& database, const CutRecord& cut) {
     }
 }
 
+struct NewCut {
+    std::string job;
+    std::string device;
+    std::vector<int> sheets;
+};
+
+// Returns its id.
+std::string insert_cut(SQLite::Database& database, const NewCut& wanted) {
+    CutRecord cut;
+    cut.id = new_id("c_");
+    cut.job = wanted.job;
+    SQLite::Statement insert(database,
+                             "INSERT INTO cut(id, job, device, sheets, state, created_ms, "
+                             "updated_ms) VALUES(?, ?, ?, ?, 'waiting', ?, ?)");
+    const std::int64_t now = wall_clock_ms();
+    insert.bind(1, cut.id);
+    insert.bind(2, cut.job);
+    insert.bind(3, wanted.device);
+    insert.bind(4, joined(wanted.sheets));
+    insert.bind(5, now);
+    insert.bind(6, now);
+    insert.exec();
+    tell(database, cut, "waiting");
+    tell_job(database, cut, "cut waiting");
+    return cut.id;
+}
+
+// It ended early, and no other cut has begun, or is to begin, its rest: nothing is burnt twice.
+bool is_open_ended(SQLite::Database& database, const CutRecord& cut) {
+    if (!is_final(cut.state) || cut.state == CutState::Done) {
+        return false;
+    }
+    SQLite::Statement rest(
+        database,
+        "SELECT 1 FROM cut WHERE rest_of = ? AND NOT (state = 'aborted' AND NOT EXISTS("
+        "SELECT 1 FROM cut_intent WHERE cut_intent.cut = cut.id)) LIMIT 1");
+    rest.bind(1, cut.id);
+    return !rest.executeStep();
+}
+
 }  // namespace
 
 CutRecord CutStore::add(const std::string& job,
@@ -200,22 +261,7 @@ CutRecord CutStore::add(const std::string& job,
     CutRecord cut;
     database_.write([&](SQLite::Database& database) {
         check_sheets(database, job, sheets);
-        cut.id = new_id("c_");
-        cut.job = job;
-        SQLite::Statement insert(database,
-                                 "INSERT INTO cut(id, job, device, sheets, state, created_ms, "
-                                 "updated_ms) VALUES(?, ?, ?, ?, 'waiting', ?, ?)");
-        const std::int64_t now = wall_clock_ms();
-        insert.bind(1, cut.id);
-        insert.bind(2, job);
-        insert.bind(3, device);
-        insert.bind(4, joined(sheets));
-        insert.bind(5, now);
-        insert.bind(6, now);
-        insert.exec();
-        tell(database, cut, "waiting");
-        tell_job(database, cut, "cut waiting");
-        cut = find_cut(database, cut.id).value();
+        cut = find_cut(database, insert_cut(database, {job, device, sheets})).value();
     });
     return cut;
 }
@@ -313,6 +359,65 @@ void CutStore::record_progress(const std::string& id, const CutProgress& progres
     database_.write([&](SQLite::Database& database) { set_progress(database, id, progress); });
 }
 
+void CutStore::record_beam(const std::string& id, const BeamRecord& beam) {
+    database_.write([&](SQLite::Database& database) {
+        SQLite::Statement update(database,
+                                 "UPDATE cut SET beam = ?, version = version + 1 WHERE id = ?");
+        update.bind(1, written(beam));
+        update.bind(2, id);
+        update.exec();
+        if (const auto cut = find_cut(database, id)) {
+            tell(database, *cut,
+                 fmt::format("beam: {:.1f} to {:.1f} of {:.1f} mm burnt", beam.least_mm,
+                             beam.most_mm, beam.total_mm));
+        }
+    });
+}
+
+bool CutStore::may_be_finished(const CutRecord& cut) const {
+    bool free = false;
+    database_.read([&](SQLite::Database& database) { free = is_open_ended(database, cut); });
+    return free;
+}
+
+std::optional<CutRecord> CutStore::add_rest(const CutRecord& of,
+                                            const std::string& program_sha256) {
+    std::optional<CutRecord> added;
+    database_.write([&](SQLite::Database& database) {
+        const auto cut = find_cut(database, of.id);
+        if (!cut || cut->version != of.version || !is_open_ended(database, *cut)) {
+            return;
+        }
+        const std::vector<int> sheets(
+            cut->sheets.begin() + static_cast<std::ptrdiff_t>(cut->position), cut->sheets.end());
+        const std::string id = insert_cut(database, {cut->job, cut->device, sheets});
+        SQLite::Statement rest(database,
+                               "UPDATE cut SET rest_of = ?, rest_sha256 = ? WHERE id = ?");
+        rest.bind(1, cut->id);
+        rest.bind(2, program_sha256);
+        rest.bind(3, id);
+        rest.exec();
+        tell(database, *cut, fmt::format("its rest is {}", id));
+        added = find_cut(database, id);
+    });
+    return added;
+}
+
+std::optional<CutRecord> CutStore::last_begun_on(const std::string& device) const {
+    std::optional<CutRecord> cut;
+    database_.read([&](SQLite::Database& database) {
+        SQLite::Statement query(database,
+                                "SELECT cut_intent.cut FROM cut_intent JOIN cut ON cut.id = "
+                                "cut_intent.cut WHERE cut.device = ? ORDER BY cut_intent.id DESC "
+                                "LIMIT 1");
+        query.bind(1, device);
+        if (query.executeStep()) {
+            cut = find_cut(database, query.getColumn(0).getString());
+        }
+    });
+    return cut;
+}
+
 std::int64_t CutStore::count(CutState state) const {
     std::int64_t counted = 0;
     database_.read([&](SQLite::Database& database) {
@@ -341,7 +446,8 @@ std::vector<std::string> CutStore::recover() {
             move_cut(
                 database, cut, CutState::Interrupted,
                 fmt::format("the daemon died while sheet {} was being cut: at least {} of {} lines "
-                            "were done; cut this sheet again on fresh material",
+                            "were done; finish its rest if that is offered, or cut this sheet "
+                            "again on fresh material",
                             cut.sheet(), cut.lines_acknowledged, cut.lines_total));
         }
     });

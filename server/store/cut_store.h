@@ -19,6 +19,8 @@ struct CutProgress {
     std::int64_t lines_total = 0;
     std::int64_t lines_sent = 0;
     std::int64_t lines_acknowledged = 0;
+    double burnt_mm = 0.0;  // Of a cut in work; not kept.
+    double burn_mm = 0.0;
 };
 
 // The job can't be cut as wanted: not computed yet, or it has no such sheet.
@@ -59,6 +61,19 @@ public:
 
     // How far the beam got; no event.
     void record_progress(const std::string& id, const CutProgress& progress);
+
+    // How far the beam of a cut that is over got.
+    void record_beam(const std::string& id, const BeamRecord& beam);
+
+    // It ended early, and its rest is in nobody's hands.
+    bool may_be_finished(const CutRecord& cut) const;
+
+    // A waiting cut of the rest: of the current sheet by that program, of the others whole. Nothing
+    // if something else happened to `of` since it was read.
+    std::optional<CutRecord> add_rest(const CutRecord& of, const std::string& program_sha256);
+
+    // The cut that last had the beam of a device.
+    std::optional<CutRecord> last_begun_on(const std::string& device) const;
 
     std::int64_t count(CutState state) const;
 

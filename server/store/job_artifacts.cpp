@@ -51,7 +51,8 @@ bool JobStore::refers_to_blob(const std::string& sha256) const {
     database_.read([&](SQLite::Database& database) {
         SQLite::Statement query(database,
                                 "SELECT EXISTS(SELECT 1 FROM artifact WHERE sha256 = ?1) "
-                                "OR EXISTS(SELECT 1 FROM job WHERE file_sha256 = ?1)");
+                                "OR EXISTS(SELECT 1 FROM job WHERE file_sha256 = ?1) "
+                                "OR EXISTS(SELECT 1 FROM cut WHERE rest_sha256 = ?1)");
         query.bind(1, sha256);
         found = query.executeStep() && query.getColumn(0).getInt() != 0;
     });

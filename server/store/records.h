@@ -59,6 +59,18 @@ struct JobRecord {
     std::string recut_of;  // The job whose pieces it cuts again; empty: none.
 };
 
+// How far the beam got in a cut that ended early, in burnt mm of its sheet's program.
+struct BeamRecord {
+    double least_mm = 0.0;
+    double likely_mm = 0.0;
+    double most_mm = 0.0;
+    double total_mm = 0.0;
+    int line = 0;  // Of the program as it is streamed, from 1.
+    std::array<double, 2> at_mm{};
+    bool certain = false;        // To within a millimetre.
+    bool position_kept = false;  // The machine still knows where its head stands.
+};
+
 struct CutRecord {
     std::string id;  // "c_…"
     std::int64_t ordinal = 0;
@@ -69,6 +81,8 @@ struct CutRecord {
     CutState state = CutState::Waiting;
     std::int64_t version = 1;
     std::string program_sha256;  // Of the current sheet's program.
+    std::string rest_of;         // The cut whose rest its first sheet is; empty: none.
+    std::optional<BeamRecord> beam;
     std::int64_t lines_total = 0;
     std::int64_t lines_sent = 0;
     std::int64_t lines_acknowledged = 0;
@@ -78,6 +92,7 @@ struct CutRecord {
 
     int sheet() const { return sheets.at(position); }
     bool on_last_sheet() const { return position + 1 == sheets.size(); }
+    bool is_rest() const { return position == 0 && !rest_of.empty(); }
 
     // Where an armed cut goes back to.
     CutState before_arming() const {

@@ -108,6 +108,15 @@ CREATE TABLE material(
 
 -- The job whose pieces it cuts again.
 ALTER TABLE job ADD COLUMN recut_of TEXT NOT NULL DEFAULT '';
+)sql",
+    R"sql(
+-- The cut whose rest its first sheet is, with the program of that; and how far its own beam got.
+ALTER TABLE cut ADD COLUMN rest_of TEXT NOT NULL DEFAULT '';
+ALTER TABLE cut ADD COLUMN rest_sha256 TEXT NOT NULL DEFAULT '';
+ALTER TABLE cut ADD COLUMN beam TEXT NOT NULL DEFAULT '';
+CREATE INDEX cut_rest ON cut(rest_of) WHERE rest_of <> '';
+CREATE INDEX cut_rest_blob ON cut(rest_sha256) WHERE rest_sha256 <> '';
+CREATE INDEX cut_intent_of ON cut_intent(cut);
 )sql"};
 
 // Durability first: FULL syncs every commit, and only the writer's own checkpoints touch the file.

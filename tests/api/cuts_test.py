@@ -199,7 +199,7 @@ class Cuts(CutsOf):
         self.burning(machine, path)
         self.assertEqual(self.ask("POST", path + "/abort")[0], 202)
         cut = self.reaches(path, "aborted")
-        self.assertEqual(cut["actions"], [])
+        self.assertEqual(cut["actions"], ["finish"])
         machine.until("idle")
         burnt = machine.burnt_mm()
         self.assertTrue(0 < burnt < 0.9 * self.planned_mm(1), burnt)
@@ -223,7 +223,7 @@ class Cuts(CutsOf):
         machine.until("idle")
         burnt = machine.burnt_mm()
         machine.stands_dark()
-        self.assertEqual(self.get(path)["actions"], [])
+        self.assertEqual(self.get(path)["actions"], ["finish"])
         self.assertEqual(machine.burnt_in_all_mm(), burnt)
 
     def test_a_machine_of_its_own_cuts_every_sheet_by_itself(self):

@@ -19,8 +19,8 @@ class SteppedMachine {
 public:
     using Time = GrblSession::Time;
 
-    explicit SteppedMachine(const GrblMachineOptions& options = {}, std::optional<Fault> fault = {})
-        : machine_(options, fault), session_(now_) {}
+    explicit SteppedMachine(const GrblMachineOptions& options = {}, std::vector<Fault> faults = {})
+        : machine_(options, std::move(faults)), session_(now_) {}
 
     GrblSession& session() { return session_; }
     GrblMachine& machine() { return machine_.machine(); }
@@ -42,6 +42,9 @@ public:
         }
         most_rx_in_flight_ = std::max(most_rx_in_flight_, in_flight());
         session_.receive(arrived, now_);
+        if (watch != nullptr) {
+            session_.allow_lines(watch->lines_allowed(session_.progress(), session_.status()));
+        }
         session_.tick(now_);
         most_rx_in_flight_ = std::max(most_rx_in_flight_, in_flight());
     }
@@ -74,6 +77,7 @@ public:
     std::size_t most_bytes_in_flight() const { return most_rx_in_flight_; }
 
     std::function<int()> delay;  // In turns; empty: none.
+    JobWatch* watch = nullptr;
 
 private:
     std::size_t in_flight() const { return session_.bytes_in_flight(); }

@@ -49,9 +49,10 @@ std::string program_of(const std::vector<Point>& points) {
 }
 
 struct Bench {
-    explicit Bench(std::optional<Fault> fault = {}) {
+    explicit Bench(std::vector<Fault> faults = {}) {
         host = std::make_unique<SimHost>(
-            open_pty_link(), std::make_unique<FaultyMachine>(GrblMachineOptions(), fault), kFast);
+            open_pty_link(),
+            std::make_unique<FaultyMachine>(GrblMachineOptions(), std::move(faults)), kFast);
         device = open_device("grbl:" + host->address());
     }
 
@@ -123,7 +124,7 @@ TEST(GrblDevice, WritesTheBeamLogOfItsOwnSimulatedMachine) {
 }
 
 TEST(GrblDevice, FindsAnUnpluggedMachineAtOnceAndStaysDisconnected) {
-    Bench bench(parse_fault("unplug:50"));
+    Bench bench(parse_faults("unplug:50"));
     bench.device->start(program_of(spiral(400)));
     EXPECT_THROW(bench.run_to_end(), LinkLost);
     EXPECT_EQ(bench.device->progress().outcome, JobOutcome::LinkLost);

@@ -1,6 +1,8 @@
 #include <cmath>
+#include <deque>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -48,7 +50,7 @@ TEST(GrblMachine, ReportsErrorsByGrblsNumbers) {
     Machine machine;
     const std::vector<std::pair<std::string, int>> cases{{"X", 2},
                                                          {"1", 1},
-                                                         {"$Q", 3},
+                                                         {"$GG", 3},
                                                          {"S-1", 4},
                                                          {"$H", 5},
                                                          {"$20=1", 10},
@@ -61,7 +63,7 @@ TEST(GrblMachine, ReportsErrorsByGrblsNumbers) {
                                                          {"G0X1X2", 25},
                                                          {"G92", 26},
                                                          {"G4", 28},
-                                                         {"G59.1X1", 20},
+                                                         {"G59.1X1", 23},
                                                          {"G53G2X1I1F1", 30},
                                                          {"G80X1", 31},
                                                          {"G2Z1F1", 32},
@@ -74,7 +76,7 @@ TEST(GrblMachine, ReportsErrorsByGrblsNumbers) {
                                                          {"G10L2P9X1", 29},
                                                          {"N99999999", 27},
                                                          {"$J=X1", 22},
-                                                         {"$J=X1S1F1", 16},
+                                                         {"$J=X1S1F1", 36},
                                                          {std::string(90, 'X'), 11}};
     for (const auto& [line, code] : cases) {
         EXPECT_EQ(machine.say(line), fmt::format("error:{}\r\n", code)) << line;
@@ -202,6 +204,8 @@ TEST(GrblMachine, LosesItsPositionOnlyWhenResetWhileMoving) {
     machine.advance(1.0);
     EXPECT_THAT(machine.feed("\x18"), StartsWith("ALARM:3\r\n"));
     EXPECT_EQ(machine.state(), GrblMachine::State::Alarm);
+    EXPECT_EQ(machine.say("G21"), "");  // Lost: the reset takes half a second.
+    EXPECT_THAT(machine.advance(0.6), HasSubstr("unlock]"));
     EXPECT_EQ(machine.say("G0X1"), "error:9\r\n");
     EXPECT_THAT(machine.say("$X"), EndsWith("ok\r\n"));
 
@@ -236,7 +240,7 @@ TEST(GrblMachine, TripsTheSoftLimitAndThenServesOnlyAReset) {
     EXPECT_EQ(machine.say("$X"), "");
     machine.feed("\x18");
     EXPECT_THAT(machine.feed("?"), StartsWith("<Alarm|MPos:-1.000,-1.000"));
-    EXPECT_EQ(machine.say("$J=X5F100"), "error:9\r\n");
+    EXPECT_EQ(machine.say("$J=X5F100"), "error:8\r\n");
     machine.say("$X");
     EXPECT_EQ(machine.say("$J=G90X5F100"), "error:15\r\n");
 }
@@ -324,6 +328,72 @@ TEST(GrblMachine, WaitsOutADwellBeforeItAnswers) {
     EXPECT_EQ(machine.say("G4P0.5"), "");
     EXPECT_EQ(machine.advance(0.4), "");
     EXPECT_EQ(machine.advance(0.2), "ok\r\n");
+}
+
+// Seconds from the first step to the last, with the receive buffer always full.
+double job_time(GrblMachine& machine, const std::string& program) {
+    std::deque<std::size_t> sent;
+    std::size_t in_buffer = 0;
+    double begin = -1.0;
+    double end = 0.0;
+    Axes before = machine.position_mm();
+    const auto count = [&](const std::string& answers) {
+        for (std::size_t at = 0; (at = answers.find("ok\r\n", at)) != std::string::npos; at += 4) {
+            in_buffer -= sent.front();
+            sent.pop_front();
+        }
+    };
+    const auto turn = [&] {
+        count(machine.advance(0.001));
+        if (machine.position_mm() != before) {
+            before = machine.position_mm();
+            begin = begin < 0.0 ? machine.now_s() : begin;
+            end = machine.now_s();
+        }
+    };
+    std::istringstream lines(program);
+    for (std::string line; std::getline(lines, line);) {
+        sent.push_back(line.size() + 1);
+        for (in_buffer += line.size() + 1; in_buffer > 127;) {
+            turn();
+        }
+        count(machine.feed(line + "\n"));
+    }
+    while (!machine.at_rest() || !sent.empty()) {
+        turn();
+    }
+    return end - begin;
+}
+
+// The times are those of the real Grbl 1.1h, its steps counted on a PC.
+TEST(GrblMachine, TakesAsLongAsTheRealFirmwareForAJob) {
+    std::string spiral = "G21G90\nM4S0\nG0X10Y10\nF3000\n";
+    for (int i = 0; i < 5000; ++i) {
+        const double angle = 0.05 * i;
+        const double radius = 10.0 + 30.0 * i / 5000;
+        spiral += fmt::format("G1X{:.3f}Y{:.3f}S500\n", 60.0 + radius * std::cos(angle),
+                              60.0 + radius * std::sin(angle));
+    }
+    Machine first;
+    EXPECT_NEAR(job_time(first, spiral + "M5S0\nG0X0Y0\n") / 127.8907, 1.0, 0.003);
+    EXPECT_EQ(first.position_mm(), Axes{});
+
+    std::string raster = "G21G90\nM4S0\nG0X0Y0\nG1F6000\n";
+    for (int y = 0; y < 20; ++y) {
+        for (int i = 0; i < 60; ++i) {
+            const int x = y % 2 == 0 ? i : 59 - i;
+            raster += fmt::format("G1X{}.0Y{:.1f}S{}\n", x, y * 0.5, (x * 37 + y * 11) % 1000);
+        }
+    }
+    Machine second;
+    EXPECT_NEAR(job_time(second, raster + "M5S0\nG0X0Y0\n") / 16.7429, 1.0, 0.005);
+
+    std::string zigzag = "G21G90\nM4S0\nG0X10Y10\nG1F3000\n";
+    for (int i = 0; i < 100; ++i) {
+        zigzag += fmt::format("G1X{}Y{}S500\n", i % 2 == 0 ? 100 : 10, 10 + i);
+    }
+    Machine third;
+    EXPECT_NEAR(job_time(third, zigzag + "M5S0\nG0X0Y0\n") / 191.7592, 1.0, 0.003);
 }
 
 TEST(GrblMachine, RunsRealProgramsWithoutAnError) {

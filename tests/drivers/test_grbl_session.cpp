@@ -213,7 +213,7 @@ struct FaultCase {
 class GrblSessionFault : public testing::TestWithParam<FaultCase> {};
 
 TEST_P(GrblSessionFault, EndsTheJobWithTheBeamOffSoonAfterTheMachineStands) {
-    SteppedMachine bench({}, parse_fault(GetParam().fault));
+    SteppedMachine bench({}, parse_faults(GetParam().fault));
     ASSERT_TRUE(bench.attach());
     bench.session().start(zigzag(30));
     double stood_since = bench.now_s();
@@ -251,7 +251,7 @@ INSTANTIATE_TEST_SUITE_P(Faults,
                          });
 
 TEST(GrblSession, GivesUpAControllerThatFallsSilent) {
-    SteppedMachine bench({}, parse_fault("stall:12"));
+    SteppedMachine bench({}, parse_faults("stall:12"));
     ASSERT_TRUE(bench.attach());
     bench.session().start(zigzag(30));
     const double begin = bench.now_s();

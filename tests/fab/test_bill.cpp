@@ -65,7 +65,7 @@ JobResult small_job() {
     job.layout.unplaced = {"P2.1"};
     for (const Sheet& each : job.layout.sheets) {
         const Material& material = each.material == "weft" ? job.weft : job.warp;
-        job.programs.push_back(plan_sheet(each, job.pieces, material, {}));
+        job.programs.push_back(plan_sheet(each, job.pieces, {material}));
     }
     return job;
 }

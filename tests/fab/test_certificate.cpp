@@ -55,7 +55,7 @@ Layout column_of(const std::vector<Piece>& pieces) {
 
 std::string program_of(const JobResult& job) {
     const CutProgram program =
-        plan_sheet(job.layout.sheets.front(), job.pieces, job.weft, MachineProfile{});
+        plan_sheet(job.layout.sheets.front(), job.pieces, {job.weft, {}, job.params.cut});
     return write_gcode(program, MachineProfile{}, job.params.output.dialect);
 }
 

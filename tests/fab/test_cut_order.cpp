@@ -1,13 +1,18 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
+#include <set>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "fab/cut/cut_order.h"
+#include "fab/cut/path_walk.h"
 #include "fab/cut/point_grid.h"
-#include "fab/nest/collision.h"
+#include "fab/nest/shape.h"
+#include "tests/support/cut_sheets.h"
 
 namespace leafcutter::fab {
 namespace {
@@ -31,42 +36,6 @@ std::vector<CutPath> shuffled_rectangles(int count, std::uint32_t seed) {
     return paths;
 }
 
-// Long bent bands on shelves, each starting at any of its points.
-std::vector<CutPath> shuffled_bands(int count, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    const auto between = [&](double low, double high) {
-        return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
-    };
-    std::vector<CutPath> paths;
-    Eigen::Vector2d corner(5.0, 5.0);
-    constexpr int kCells = 24;
-    for (int i = 0; i < count; ++i) {
-        const double length = between(80.0, 480.0);
-        const double width = between(5.0, 14.0);
-        const double turn = between(-1.0, 1.0);
-        if (corner.x() + length > 1200.0) {
-            corner = {5.0, corner.y() + 18.0};
-        }
-        CutPath path;
-        Polyline back;
-        Eigen::Vector2d at = corner;
-        for (int k = 0; k <= kCells; ++k) {
-            const double heading = turn * (static_cast<double>(k) / kCells - 0.5);
-            const Eigen::Vector2d side(-std::sin(heading), std::cos(heading));
-            path.points.push_back(at - side * width / 2.0);
-            back.push_back(at + side * width / 2.0);
-            at += length / kCells * Eigen::Vector2d(std::cos(heading), std::sin(heading));
-        }
-        path.points.insert(path.points.end(), back.rbegin(), back.rend());
-        std::rotate(path.points.begin(), path.points.begin() + random() % 50, path.points.end());
-        path.points.push_back(path.points.front());
-        paths.push_back(path);
-        corner.x() += length + 5.0;
-    }
-    std::shuffle(paths.begin(), paths.end(), random);
-    return paths;
-}
-
 // Each path as a set of points, so that start and direction don't matter.
 std::vector<std::vector<std::pair<double, double>>> fingerprint(const std::vector<CutPath>& paths) {
     std::vector<std::vector<std::pair<double, double>>> out;
@@ -83,35 +52,60 @@ std::vector<std::vector<std::pair<double, double>>> fingerprint(const std::vecto
     return out;
 }
 
-double nearest_neighbour_with_fixed_starts(std::vector<CutPath> paths) {
-    double sum = 0.0;
-    Eigen::Vector2d at = kHome;
-    while (!paths.empty()) {
-        const auto next =
-            std::min_element(paths.begin(), paths.end(), [&](const CutPath& a, const CutPath& b) {
-                return (a.points.front() - at).norm() < (b.points.front() - at).norm();
-            });
-        sum += (next->points.front() - at).norm();
-        at = next->points.back();
-        paths.erase(next);
-    }
-    return sum;
-}
-
 TEST(CutOrder, KeepsEveryPathOnceAndClosed) {
     const std::vector<CutPath> paths = shuffled_rectangles(60, 2);
     const std::vector<CutPath> ordered = order_paths(paths, kHome);
-    EXPECT_EQ(fingerprint(ordered), fingerprint(paths));
+    ASSERT_EQ(ordered.size(), paths.size());
+    std::set<std::string> seen;
     for (const CutPath& path : ordered) {
         EXPECT_EQ(path.points.front(), path.points.back());
-        EXPECT_EQ(path.points.size(), 5U);
+        EXPECT_NEAR(length_mm(path.points), 34.0, 1e-9);
+        EXPECT_NEAR(std::abs(signed_area(path.points)), 70.0, 1e-9);
+        EXPECT_TRUE(seen.insert(path.piece).second);
     }
 }
 
 TEST(CutOrder, TravelsFarLessThanNearestNeighbourWithFixedStarts) {
-    const std::vector<CutPath> paths = shuffled_bands(200, 7);
-    const double travel = travel_mm(order_paths(paths, kHome), kHome);
-    EXPECT_LT(travel, 0.65 * nearest_neighbour_with_fixed_starts(paths));
+    for (const std::uint32_t seed : {7U, 8U}) {
+        const std::vector<CutPath> paths = test::shuffled_bands(600, seed);
+        const double travel = travel_mm(order_paths(paths, kHome), kHome);
+        EXPECT_LT(travel, 0.5 * test::nearest_neighbour_with_fixed_starts(paths));
+    }
+}
+
+TEST(CutOrder, KeepsToldPrecedenceHoweverLongTheWay) {
+    std::vector<CutPath> paths = shuffled_rectangles(80, 4);
+    OrderRules rules;
+    std::mt19937 random(11);
+    for (std::size_t i = 0; i + 1 < paths.size(); ++i) {
+        // Forward only: no ring.
+        rules.before.emplace_back(i, i + 1 + random() % (paths.size() - i - 1));
+    }
+    const std::vector<CutPath> ordered = order_paths(paths, kHome, rules);
+    std::map<std::string, std::size_t> position;
+    for (const CutPath& path : ordered) {
+        position.emplace(path.piece, position.size());
+    }
+    ASSERT_EQ(position.size(), paths.size());
+    for (const auto& [first, second] : rules.before) {
+        EXPECT_LT(position.at(paths[first].piece), position.at(paths[second].piece));
+    }
+}
+
+TEST(CutOrder, StartsOnlyWhereItIsTold) {
+    const std::vector<CutPath> paths = shuffled_rectangles(30, 5);
+    OrderRules rules;
+    rules.starts_mm.assign(paths.size(), {4.0, 13.5});
+    for (const CutPath& path : order_paths(paths, kHome, rules)) {
+        const auto drawn = std::find_if(paths.begin(), paths.end(), [&](const CutPath& each) {
+            return each.piece == path.piece;
+        });
+        const Eigen::Vector2d corner = drawn->points.front();
+        const Eigen::Vector2d start = path.points.front() - corner;
+        EXPECT_TRUE((start - Eigen::Vector2d(4.0, 0.0)).norm() < 1e-9 ||
+                    (start - Eigen::Vector2d(10.0, 3.5)).norm() < 1e-9)
+            << start.transpose();
+    }
 }
 
 TEST(CutOrder, CutsTheInsideBeforeItsOutside) {

@@ -117,12 +117,8 @@ void expect_sound(const NestInstance& instance, const InstanceSolution& solution
     }
     for (const InstancePlacement& placed : layout.placed) {
         --left[placed.item];
-        const std::vector<double>& allowed = instance.items[placed.item].allowed_deg;
-        const bool fine =
-            allowed.empty() || std::any_of(allowed.begin(), allowed.end(), [&](double angle) {
-                return std::remainder(angle - placed.rotation_deg, 360.0) == 0.0;
-            });
-        EXPECT_TRUE(fine) << placed.rotation_deg;
+        EXPECT_TRUE(instance.items[placed.item].allowed_deg.allows(placed.rotation_deg, 0.0))
+            << placed.rotation_deg;
     }
     for (const std::size_t item : solution.unplaced) {
         --left[item];

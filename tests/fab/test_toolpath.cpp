@@ -50,7 +50,7 @@ Sheet two_pieces() {
 
 CutProgram planned() {
     const std::vector<Piece> pieces{marked_piece("W1.1"), marked_piece("W2.1")};
-    return plan_sheet(two_pieces(), pieces, paper(), {});
+    return plan_sheet(two_pieces(), pieces, {paper()});
 }
 
 TEST(Placement, MirrorsThenTurnsThenMoves) {
@@ -106,7 +106,7 @@ TEST(Toolpath, CutsAMirroredPieceOutsideToo) {
     Sheet sheet = two_pieces();
     sheet.placements = {{"W1.1", 100.0, 20.0, 0.0, true}};
     const std::vector<Piece> pieces{marked_piece("W1.1")};
-    const CutProgram program = plan_sheet(sheet, pieces, paper(), {});
+    const CutProgram program = plan_sheet(sheet, pieces, {paper()});
     const double outline = std::abs(signed_area(pieces[0].outline));
     const double cut = std::abs(signed_area(program.paths.back().points));
     EXPECT_GT(cut, outline);
@@ -115,16 +115,16 @@ TEST(Toolpath, CutsAMirroredPieceOutsideToo) {
 
 TEST(Toolpath, BurnsADoubledMarkOnce) {
     std::vector<Piece> pieces{marked_piece("W1.1"), marked_piece("W2.1")};
-    const std::size_t paths = plan_sheet(two_pieces(), pieces, paper(), {}).paths.size();
+    const std::size_t paths = plan_sheet(two_pieces(), pieces, {paper()}).paths.size();
     Mark again = pieces[0].marks[0];
     std::reverse(again.path.begin(), again.path.end());
     pieces[0].marks.push_back(again);
-    EXPECT_EQ(plan_sheet(two_pieces(), pieces, paper(), {}).paths.size(), paths);
+    EXPECT_EQ(plan_sheet(two_pieces(), pieces, {paper()}).paths.size(), paths);
 }
 
 TEST(Toolpath, RefusesASheetWithAPieceItDoesNotHave) {
     const std::vector<Piece> pieces{marked_piece("W1.1")};
-    EXPECT_THROW(plan_sheet(two_pieces(), pieces, paper(), {}), geometry::Error);
+    EXPECT_THROW(plan_sheet(two_pieces(), pieces, {paper()}), geometry::Error);
 }
 
 CutProgram line_program(double length_mm, int passes) {

@@ -1,5 +1,7 @@
 // Cuts. Nothing here fires a laser but start and confirm-sheet, which name the exact program.
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -79,6 +81,66 @@ Response arm(App& app, const Request& request, CutState from, const std::string&
     return json_response(cut_json(app, find_cut(app, request)), 202);
 }
 
+// Said by someone who looked; anything but true is no word.
+bool says(const json& body, const char* field) {
+    const auto found = body.find(field);
+    return found != body.end() && *found == true;
+}
+
+// What is burnt already: what the journal knows, or where it can't, what the operator saw.
+double burnt_part(const json& body, const BeamRecord& beam) {
+    const auto said = body.find("burnt_mm");
+    if (said != body.end() && !said->is_null()) {
+        // A ruler is not exact: a little beyond what can be is still taken.
+        constexpr double kRuler = 5.0;
+        const bool plausible = said->is_number() && said->get<double>() >= beam.least_mm - kRuler &&
+                               said->get<double>() <= beam.most_mm + kRuler;
+        if (!plausible) {
+            throw HttpProblem(422, "bad-field",
+                              fmt::format("burnt_mm: must lie between {:.1f} and {:.1f}",
+                                          beam.least_mm, beam.most_mm));
+        }
+        return said->get<double>();
+    }
+    if (!beam.certain) {
+        throw HttpProblem(
+            409, "beam-unknown",
+            fmt::format(
+                "the beam stopped somewhere between {:.1f} and {:.1f} mm: look at the "
+                "sheet and say burnt_mm. A machine that lost its power stopped near {:.1f}; "
+                "one that only lost its link did all it had been sent, {:.1f}",
+                beam.least_mm, beam.most_mm, beam.likely_mm, beam.most_mm));
+    }
+    return beam.likely_mm;
+}
+
+void check_finish(App& app, const json& body, const CutRecord& cut) {
+    if (!says(body, "material_in_place")) {
+        throw HttpProblem(422, "bad-field",
+                          "material_in_place: must be true: the sheet lies as it lay");
+    }
+    if (!cut.beam->position_kept && !says(body, "homed")) {
+        throw HttpProblem(422, "bad-field",
+                          "homed: must be true: the machine lost its position, home it first");
+    }
+    const auto runner = app.fleet().find(cut.device);
+    if (!runner || !runner->is_ready()) {
+        throw HttpProblem(409, "device-not-ready", "the machine is not idle: unlock or home it");
+    }
+    const auto origin = origin_of_cut(app.store(), cut);
+    const drivers::DeviceStatus status = runner->status();
+    for (std::size_t axis = 0; origin && axis < 2; ++axis) {
+        constexpr double kSame = 0.1;
+        const double now = status.machine_position_mm[axis] - status.work_position_mm[axis];
+        if (std::abs(now - (*origin)[axis]) > kSame && !says(body, "origin_set_again")) {
+            throw HttpProblem(409, "origin-moved",
+                              fmt::format("the work origin lay at {:.2f}, {:.2f} of the machine "
+                                          "and does no more: set it back, or say origin_set_again",
+                                          (*origin)[0], (*origin)[1]));
+        }
+    }
+}
+
 // Pause and resume go straight to the machine; the cut's state follows what the machine then does.
 template <typename Act>
 Response tell_runner(App& app, const Request& request, const std::string& action, Act act) {
@@ -141,6 +203,28 @@ Response resume_cut(App& app, Request& request) {
     return tell_runner(app, request, "resume", [](DeviceRunner& runner, const std::string& cut) {
         return runner.resume(cut);
     });
+}
+
+Response finish_cut(App& app, Request& request) {
+    const CutRecord cut = find_cut(app, request);
+    const json body = read_json_object(request);
+    if (!cut_allows(app, cut, "finish")) {
+        throw not_now(cut, "finish");
+    }
+    check_finish(app, body, cut);
+    const double burnt_mm = burnt_part(body, *cut.beam);
+    const std::string program = rest_program(app.store(), cut, burnt_mm);
+    if (program.empty()) {
+        throw HttpProblem(409, "nothing-left", "all of this sheet is burnt");
+    }
+    const auto rest = app.store().cuts.add_rest(cut, app.store().blobs.put(program).sha256);
+    if (!rest) {
+        throw HttpProblem(409, "not-now", "something else happened to the cut just now");
+    }
+    app.fleet().find(cut.device)->wake();
+    Response response = json_response(cut_json(app, *rest), 201);
+    response.headers["Location"] = "/api/v1/cuts/" + rest->id;
+    return response;
 }
 
 Response abort_cut(App& app, Request& request) {

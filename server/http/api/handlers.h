@@ -33,6 +33,7 @@ Response start_cut(App& app, Request& request);
 Response confirm_sheet(App& app, Request& request);
 Response pause_cut(App& app, Request& request);
 Response resume_cut(App& app, Request& request);
+Response finish_cut(App& app, Request& request);
 Response abort_cut(App& app, Request& request);
 
 // devices.cpp

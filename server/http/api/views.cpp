@@ -52,6 +52,12 @@ bool may_fire(App& app, const CutRecord& cut) {
     });
 }
 
+// It ended early, something is left to burn, and nobody has begun that yet.
+bool has_rest(App& app, const CutRecord& cut) {
+    return cut.beam && cut.beam->least_mm < cut.beam->total_mm &&
+           app.store().cuts.may_be_finished(cut);
+}
+
 std::vector<std::string> cut_actions(App& app, const CutRecord& cut) {
     switch (cut.state) {
         case CutState::Waiting:
@@ -67,8 +73,26 @@ std::vector<std::string> cut_actions(App& app, const CutRecord& cut) {
         case CutState::Paused:
             return {"resume", "abort"};
         default:
-            return {};
+            return has_rest(app, cut) ? std::vector<std::string>{"finish"}
+                                      : std::vector<std::string>{};
     }
+}
+
+// How far the beam got; null while nobody knows.
+json beam_json(const CutRecord& cut) {
+    if (!cut.beam) {
+        return {};
+    }
+    const BeamRecord& beam = *cut.beam;
+    return {{"burnt_mm", beam.likely_mm},
+            {"least_mm", beam.least_mm},
+            {"most_mm", beam.most_mm},
+            {"total_mm", beam.total_mm},
+            {"percent", beam.total_mm > 0.0 ? 100.0 * beam.likely_mm / beam.total_mm : 0.0},
+            {"line", beam.line},
+            {"at_mm", beam.at_mm},
+            {"certain", beam.certain},
+            {"position_kept", beam.position_kept}};
 }
 
 json progress_json(App& app, const JobRecord& job) {
@@ -171,7 +195,11 @@ json cut_json(App& app, const CutRecord& cut) {
              {{"lines_total", progress.lines_total},
               {"lines_sent", progress.lines_sent},
               {"lines_acknowledged", progress.lines_acknowledged},
-              {"fraction", fraction}}},
+              {"fraction", fraction},
+              {"burnt_mm", progress.burnt_mm},
+              {"burn_mm", progress.burn_mm}}},
+            {"beam", beam_json(cut)},
+            {"rest_of", cut.rest_of.empty() ? json() : json(cut.rest_of)},
             {"reason", cut.reason},
             {"created_at", rfc3339(cut.created_ms)},
             {"updated_at", rfc3339(cut.updated_ms)},

@@ -1,0 +1,270 @@
+// First fit on the cheapest sheets, then mixes that cost less (sheets whose items must find room on
+// the others), then compaction of the dearest sheet.
+
+#include "fab/nest/sheet_search.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "fab/nest/settle.h"
+#include "fab/nest/sheet_mixes.h"
+#include "fab/nest/sheet_start.h"
+#include "geometry/error.h"
+
+namespace leafcutter::fab {
+
+namespace {
+
+constexpr double kStartShare = 0.15;   // Of all work: the first layouts,
+constexpr double kMixesShare = 0.4;    // cheaper mixes, where there may be some
+constexpr double kHidesShare = 0.75;   // (if all are irregular),
+constexpr double kBriefShare = 0.125;  // and a short look at each of several sizes.
+constexpr std::size_t kMostTries = 4;  // Of mixes that came to nothing.
+
+// Filling irregular sheets denser than this is not tried for.
+constexpr double kDensest = 0.9;
+
+class SheetSearch {
+public:
+    SheetSearch(const SheetProblem& problem,
+                const CompactionOptions& options,
+                const geometry::Context& context,
+                const std::function<bool(const SheetPacking&)>& accept)
+        : problem_(problem),
+          options_(options),
+          context_(context),
+          accept_(accept),
+          start_(problem, options.seed) {
+        for (const std::size_t part : problem.part_of) {
+            area_ += problem.parts[part].area;
+        }
+    }
+
+    SheetPacking run() {
+        const std::vector<std::vector<SheetRun>> offers = first_offers(problem_);
+        const double starting = kStartShare / static_cast<double>(2 * offers.size());
+        std::vector<SheetTrial> trials;
+        for (const std::vector<SheetRun>& runs : offers) {
+            trials.push_back(first_of(runs, starting));
+        }
+        done_ = kStartShare;
+        choose_start(trials);
+        const auto is_plain = [](const SheetKind& kind) { return kind.is_plain(); };
+        const bool hides = std::none_of(problem_.kinds.begin(), problem_.kinds.end(), is_plain);
+        if (problem_.kinds.size() > 1 || hides) {
+            find_cheaper(hides ? kHidesShare : kMixesShare);
+        }
+        compact_best(1.0 - done_);
+        return packing_of(best_);
+    }
+
+private:
+    CompactionOptions share_of(double share) const {
+        CompactionOptions out = options_;
+        out.max_evaluations = std::max<std::int64_t>(
+            1, static_cast<std::int64_t>(share * static_cast<double>(options_.max_evaluations)));
+        out.time_s = share * options_.time_s;
+        return out;
+    }
+
+    geometry::Context context_of(double share) const {
+        geometry::Context out = context_;
+        out.progress = [this, share](std::string_view stage, double fraction) {
+            context_.report(stage, std::min(1.0, done_ + share * fraction));
+        };
+        return out;
+    }
+
+    // The better one of filling sheets from either side.
+    SheetTrial first_of(const std::vector<SheetRun>& runs, double share) const {
+        // A first layout may not take the time of all; the clock is looked at between heaps only.
+        const double rows = share * static_cast<double>(options_.max_evaluations);
+        const auto most = static_cast<std::int64_t>(std::min(rows, kMostRows));
+        SheetTrial best = start_.lay(runs, 0, most, context_);
+        SheetTrial other = start_.lay(runs, 1, most, context_);
+        return is_better(other, best) ? other : best;
+    }
+
+    // Several sizes: a short search on each tells which one the whole search is worth.
+    void choose_start(std::vector<SheetTrial>& trials) {
+        if (trials.size() > 1) {
+            const double share = std::min(kBriefShare, 0.4 / static_cast<double>(trials.size()));
+            for (SheetTrial& trial : trials) {
+                trial = compacted(trial, share, [](const SheetTrial&) { return true; });
+                done_ += share;
+            }
+        }
+        std::stable_sort(trials.begin(), trials.end(), is_better);
+        for (const SheetTrial& trial : trials) {
+            if (publish(trial)) {
+                return;
+            }
+        }
+        throw geometry::Error(geometry::ErrorKind::SelfCheck, "nest-proof",
+                              "nest: the first layout is not sound");
+    }
+
+    bool publish(const SheetTrial& trial) {
+        if (!accept_(packing_of(trial))) {
+            return false;
+        }
+        best_ = trial;
+        return true;
+    }
+
+    SheetPacking packing_of(const SheetTrial& trial) const {
+        SheetPacking out{trial.kinds, trial.positions};
+        for (Position& at : out.positions) {
+            if (at.bin >= 0) {
+                const std::size_t kind = trial.kinds[static_cast<std::size_t>(at.bin)];
+                at = start_.frame(trial.quarters).on_sheet(at, kind);
+            }
+        }
+        return out;
+    }
+
+    static std::vector<std::size_t> laid_items(const SheetTrial& trial) {
+        std::vector<std::size_t> items;
+        for (std::size_t item = 0; item < trial.positions.size(); ++item) {
+            if (trial.positions[item].bin >= 0) {
+                items.push_back(item);
+            }
+        }
+        return items;
+    }
+
+    static std::vector<Position> positions_of(const SheetTrial& trial,
+                                              const std::vector<std::size_t>& items) {
+        std::vector<Position> out;
+        out.reserve(items.size());
+        for (const std::size_t item : items) {
+            out.push_back(trial.positions[item]);
+        }
+        return out;
+    }
+
+    // `trial` with other positions of these items.
+    SheetTrial with(const SheetTrial& trial,
+                    const std::vector<std::size_t>& items,
+                    const std::vector<Position>& positions) const {
+        SheetTrial out = trial;
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            out.positions[items[i]] = positions[i];
+        }
+        start_.sum_up(out);
+        return out;
+    }
+
+    template <typename Accept>
+    SheetTrial compacted(const SheetTrial& trial, double share, const Accept& accept) const {
+        const std::vector<std::size_t> items = laid_items(trial);
+        if (items.empty()) {
+            return trial;
+        }
+        const BoardPlan plan = start_.frame(trial.quarters).plan(items, trial.kinds);
+        constexpr double kRounding = 1e-6;
+        Packing packing{positions_of(trial, items),
+                        {static_cast<int>(trial.kinds.size()),
+                         std::min(plan.rooms.back().width, trial.last_width * (1.0 + kRounding))}};
+        SheetTrial best = trial;
+        compact(plan, std::move(packing), share_of(share), context_of(share),
+                [&](const Packing& better) {
+                    const SheetTrial next = with(trial, items, better.positions);
+                    const bool fine = accept(next);
+                    best = fine ? next : best;
+                    return fine;
+                });
+        return best;
+    }
+
+    void compact_best(double share) {
+        const SheetTrial from = best_;
+        compacted(from, share, [this](const SheetTrial& next) {
+            return !is_better(next, best_) || publish(next);
+        });
+    }
+
+    // Mixes that cost less, the roomiest first; each that works sets a lower mark for the rest.
+    void find_cheaper(double share) {
+        std::vector<Mix> failed;
+        double left = share;
+        while (failed.size() < kMostTries) {
+            const std::optional<Mix> mix = roomiest_cheaper_mix(
+                problem_, best_.kinds, best_.unplaced > 0 ? area_ : area_ / kDensest, failed);
+            if (!mix || context_.stop.stop_requested()) {
+                return;
+            }
+            // The first one is the likeliest: it gets half of what there is.
+            const double each = left / 2.0;
+            if (!try_mix(*mix, each)) {
+                failed.push_back(*mix);
+                left -= each;
+                done_ += each;
+            }
+        }
+    }
+
+    bool try_mix(const Mix& mix, double share) {
+        SheetTrial fresh = first_of(runs_of(problem_, mix), 0.0);
+        if (is_better(fresh, best_) && publish(fresh)) {
+            return true;
+        }
+        const SheetTrial moved = moved_to(mix);
+        const std::vector<std::size_t> items = laid_items(best_);
+        const BoardPlan plan = start_.frame(moved.quarters).plan(items, moved.kinds);
+        const Settled settled =
+            settle(plan, positions_of(moved, items), share_of(share), context_of(share));
+        if (!settled.found) {
+            return false;
+        }
+        const SheetTrial next = with(moved, items, settled.positions);
+        return is_better(next, best_) && publish(next);
+    }
+
+    // The best layout on other sheets: what lay on a sheet that is no longer there has no place.
+    SheetTrial moved_to(const Mix& mix) const {
+        SheetTrial moved = best_;
+        moved.kinds.clear();
+        std::vector<int> left = mix;
+        std::vector<int> bin_of(best_.kinds.size(), -1);
+        for (std::size_t bin = 0; bin < best_.kinds.size(); ++bin) {
+            if (left[best_.kinds[bin]] > 0) {
+                --left[best_.kinds[bin]];
+                bin_of[bin] = static_cast<int>(moved.kinds.size());
+                moved.kinds.push_back(best_.kinds[bin]);
+            }
+        }
+        for (std::size_t kind = 0; kind < left.size(); ++kind) {
+            moved.kinds.insert(moved.kinds.end(), static_cast<std::size_t>(left[kind]), kind);
+        }
+        for (Position& at : moved.positions) {
+            at.bin = at.bin < 0 ? -1 : bin_of[static_cast<std::size_t>(at.bin)];
+        }
+        return moved;
+    }
+
+    static constexpr double kMostRows = 2e8;
+
+    const SheetProblem& problem_;
+    const CompactionOptions& options_;
+    const geometry::Context& context_;
+    const std::function<bool(const SheetPacking&)>& accept_;
+    SheetStart start_;
+    double area_ = 0.0;
+    double done_ = 0.0;  // Share of the work.
+    SheetTrial best_;
+};
+
+}  // namespace
+
+SheetPacking search_sheets(const SheetProblem& problem,
+                           const CompactionOptions& options,
+                           const geometry::Context& context,
+                           const std::function<bool(const SheetPacking&)>& accept) {
+    return SheetSearch(problem, options, context, accept).run();
+}
+
+}  // namespace leafcutter::fab

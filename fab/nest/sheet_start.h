@@ -1,0 +1,70 @@
+// First layouts on a mix of sheets: which sheets to take, and what they cost.
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "fab/nest/compaction.h"
+#include "fab/nest/sheet_plan.h"
+#include "geometry/context.h"
+
+namespace leafcutter::fab {
+
+// A layout in the coordinates of a frame.
+struct SheetTrial {
+    int quarters = 0;                 // Of the frame.
+    std::vector<std::size_t> kinds;   // [sheet], none of them empty.
+    std::vector<Position> positions;  // [item]; bin -1: found no room.
+    double last_width = 0.0;          // How far the last sheet is used.
+    std::size_t unplaced = 0;
+    double cost = 0.0;
+    double taken = 0.0;  // Area of the sheets that cost something, the last one by its used part.
+    std::int64_t evaluations = 0;
+};
+
+// Whether `a` is worth more: more is laid, or it costs less, or it leaves more of the last sheet.
+bool is_better(const SheetTrial& a, const SheetTrial& b);
+
+// Sheets of one kind, one after the other; no count: as many as it takes.
+struct SheetRun {
+    std::size_t kind = 0;
+    std::optional<int> count;
+};
+
+class SheetStart {
+public:
+    SheetStart(const SheetProblem& problem, std::uint64_t seed);
+
+    const SheetFrame& frame(int quarters) const { return frames_[quarters != 0 ? 1 : 0]; }
+
+    // Lays what it can on the sheets of the runs, in their order: heaps on plain rectangles, each
+    // largest part first on others. `rows`: what it may try for each heap, at least one is built.
+    SheetTrial lay(std::span<const SheetRun> runs,
+                   int quarters,
+                   std::int64_t rows,
+                   const geometry::Context& context) const;
+
+    // Whether the item fits an empty plain sheet of that kind; of others nobody knows.
+    bool may_fit(std::size_t item, std::size_t kind) const {
+        return fits_[kind][problem_.part_of[item]] != 0;
+    }
+
+    // Leaves out empty sheets and adds up what the rest is.
+    void sum_up(SheetTrial& trial) const;
+
+private:
+    struct Rest;
+    void lay_plain(const SheetRun& run, std::int64_t rows, Rest& rest, SheetTrial& trial) const;
+    void lay_irregular(std::span<const SheetRun> runs, Rest& rest, SheetTrial& trial) const;
+
+    const SheetProblem& problem_;
+    std::uint64_t seed_;
+    std::vector<SheetFrame> frames_;
+    std::vector<std::vector<char>> fits_;  // [kind][part]
+};
+
+}  // namespace leafcutter::fab
