@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "drivers/sim/faulty_machine.h"
 #include "drivers/sim/grbl_machine.h"

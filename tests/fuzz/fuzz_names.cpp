@@ -32,6 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try_to([text] { parse_lihuiyu_address(text); });
     try_to([text] { parse_simulated_lihuiyu(text); });
     try_to([text] { parse_fault(text); });
+    try_to([text] { parse_faults(text); });
     try_to([text] { parse_wire_fault(text); });
     try_to([text] { parse_lihuiyu_fault(text); });
     return 0;
