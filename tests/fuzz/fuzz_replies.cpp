@@ -68,6 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (const std::string_view part : script.parts) {
             now += std::chrono::milliseconds(100);
             whole->receive(part, now);
+            cut->receive({}, now);
             for (std::size_t i = 0; i < part.size(); ++i) {
                 cut->receive(part.substr(i, 1), now);
             }
