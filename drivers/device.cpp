@@ -1,6 +1,7 @@
 #include "drivers/device.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "drivers/grbl/session.h"
 #include "drivers/lihuiyu/address.h"
@@ -54,6 +55,15 @@ std::unique_ptr<Device> attached(std::string_view uri,
     return device;
 }
 
+// What follows the ? of a simulated machine's URI; nothing for another machine.
+std::optional<std::string_view> query_of(std::string_view uri, std::string_view machine) {
+    const std::string_view rest = uri.substr(std::min(machine.size(), uri.size()));
+    if (!starts_with(uri, machine) || (!rest.empty() && rest[0] != '?')) {
+        return std::nullopt;
+    }
+    return rest.substr(std::min<std::size_t>(rest.size(), 1));
+}
+
 std::unique_ptr<Session> grbl_session(Session::Time now) {
     return std::make_unique<GrblSession>(now);
 }
@@ -68,15 +78,29 @@ std::unique_ptr<Session> smoothie_session(Session::Time now) {
 
 }  // namespace
 
+bool is_device_uri(std::string_view uri) {
+    constexpr std::string_view kLinked[] = {"grbl:", "marlin:", "smoothie:", "lihuiyu:"};
+    constexpr std::string_view kSimulated[] = {"sim:grbl", "sim:marlin", "sim:smoothie",
+                                               "sim:lihuiyu"};
+    return std::any_of(std::begin(kLinked), std::end(kLinked),
+                       [uri](std::string_view kind) { return starts_with(uri, kind); }) ||
+           std::any_of(std::begin(kSimulated), std::end(kSimulated),
+                       [uri](std::string_view kind) { return query_of(uri, kind).has_value(); });
+}
+
 std::unique_ptr<Device> open_device(std::string_view uri) {
     constexpr std::string_view kGrbl = "grbl:";
-    constexpr std::string_view kSimulated = "sim:grbl";
     if (starts_with(uri, kGrbl)) {
         return attached(uri, open_transport(uri.substr(kGrbl.size())), grbl_session);
     }
-    if (uri == kSimulated || starts_with(uri, "sim:grbl?")) {
-        const std::string_view query = uri.substr(std::min(kSimulated.size() + 1, uri.size()));
-        return attached(uri, open_simulated_grbl(query), grbl_session);
+    if (const auto query = query_of(uri, "sim:grbl")) {
+        return attached(uri, open_simulated_grbl(*query), grbl_session);
+    }
+    if (const auto query = query_of(uri, "sim:marlin")) {
+        return attached(uri, open_simulated_marlin(*query), marlin_session);
+    }
+    if (const auto query = query_of(uri, "sim:smoothie")) {
+        return attached(uri, open_simulated_smoothie(*query), smoothie_session);
     }
     constexpr std::string_view kMarlin = "marlin:";
     if (starts_with(uri, kMarlin)) {
@@ -92,7 +116,8 @@ std::unique_ptr<Device> open_device(std::string_view uri) {
     throw std::invalid_argument(
         "device \"" + std::string(uri) +
         "\": must be grbl:/dev/PORT?baud=N, grbl:tcp://host:port, marlin:…, "
-        "smoothie:… alike, lihuiyu:usb?bus=N&address=N, sim:grbl or sim:lihuiyu");
+        "smoothie:… alike, lihuiyu:usb?bus=N&address=N, sim:grbl, sim:marlin, sim:smoothie or "
+        "sim:lihuiyu");
 }
 
 }  // namespace leafcutter::drivers

@@ -125,9 +125,12 @@ public:
 };
 
 // Opens the device of a URI: grbl:/dev/ttyUSB0?baud=115200, grbl:tcp://host:port, marlin: and
-// smoothie: alike, lihuiyu:usb?bus=1&address=4 (lihuiyu/address.h), sim:grbl, sim:lihuiyu. The last
-// two start a simulated machine of its own; `?burn=FILE` keeps its beam log. Throws LinkLost, or
-// std::invalid_argument for a URI it can't read.
+// smoothie: alike, lihuiyu:usb?bus=1&address=4 (lihuiyu/address.h), sim:grbl, sim:marlin,
+// sim:smoothie, sim:lihuiyu. The sim: ones start a simulated machine of their own; `?burn=FILE`
+// keeps its beam log. Throws LinkLost, or std::invalid_argument for a URI it can't read.
 std::unique_ptr<Device> open_device(std::string_view uri);
+
+// Whether a URI begins like one that open_device() takes; opens nothing.
+bool is_device_uri(std::string_view uri);
 
 }  // namespace leafcutter::drivers

@@ -26,14 +26,18 @@ public:
     // Returns what came, at most `most` bytes; empty after `timeout`. Throws LinkLost.
     virtual std::string bulk_read(std::size_t most, std::chrono::milliseconds timeout) = 0;
 
+    // Lets `time` pass. Throws LinkLost as soon as the device is gone.
+    virtual void rest(std::chrono::milliseconds time) = 0;
+
     virtual std::string description() const = 0;
 };
 
 struct UsbPlace {
     std::uint16_t vendor = 0;
     std::uint16_t product = 0;
-    std::optional<unsigned> bus;  // Without: the first device of that vendor and product.
-    std::optional<unsigned> address;
+    std::optional<unsigned> bus;      // Without: the first device of that vendor and product.
+    std::optional<unsigned> address;  // Another one each time that the device is plugged in.
+    std::string port;                 // "1-2.3", bus and sockets: stays. Empty: any.
     std::uint8_t endpoint_out = 0x02;
     std::uint8_t endpoint_in = 0x82;
 };

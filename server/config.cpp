@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "drivers/device.h"
+
 namespace leafcutter::server {
 
 namespace {
@@ -180,8 +182,10 @@ void check_device(const DeviceRecord& device) {
         !std::all_of(device.id.begin(), device.id.end(), is_plain)) {
         throw BadConfig("id: must be 1 to 64 of a-z, 0-9, - and _");
     }
-    if (!device.uri.starts_with("grbl:") && !device.uri.starts_with("sim:grbl")) {
-        throw BadConfig("uri: must be grbl:PORT, grbl:tcp://HOST:PORT or sim:grbl");
+    if (!drivers::is_device_uri(device.uri)) {
+        throw BadConfig(
+            "uri: must be grbl:PORT, grbl:tcp://HOST:PORT, marlin:… or smoothie:… alike, "
+            "lihuiyu:usb?bus=N&address=N, sim:grbl, sim:marlin, sim:smoothie or sim:lihuiyu");
     }
     for (const double side : device.bed_mm) {
         if (!std::isfinite(side) || side <= 0.0) {

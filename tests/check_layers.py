@@ -27,7 +27,7 @@ PINNED = {
     r"OpenMesh/.*": [r"geometry/mesh\.h"],
     r"termios\.h|asm/termbits\.h|sys/ioctl\.h|pty\.h": [r"drivers/.*", r"server/cli/.*"],
     r"sys/socket\.h|netdb\.h|arpa/inet\.h": [r"drivers/.*", r"server/.*"],
-    r"libusb.*": [r"drivers/usb_pipe\.cpp", r"drivers/port_discovery\.cpp"],
+    r"libusb.*": [r"drivers/usb_(context|pipe|watch)\.(h|cpp)"],
 }
 
 # Words that have no business in the pure core: clocks, randomness without a seed, threads' owners.

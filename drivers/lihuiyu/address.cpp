@@ -46,11 +46,13 @@ void set_usb_option(std::string_view key, std::string_view value, LihuiyuAddress
         address.usb.bus = read_number<unsigned>(key, value);
     } else if (usb && key == "address") {
         address.usb.address = read_number<unsigned>(key, value);
+    } else if (usb && key == "port") {
+        address.usb.port = value;
     } else if (!set_lihuiyu_option(key, value, address.encoder)) {
         throw std::invalid_argument(
             fmt::format("lihuiyu: unknown setting \"{}\"; known are {}board, width, height, x, "
                         "down, dpi, slope",
-                        key, usb ? "bus, address, " : ""));
+                        key, usb ? "bus, address, port, " : ""));
     }
 }
 

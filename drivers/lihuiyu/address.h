@@ -1,7 +1,8 @@
 // Device URIs of Lihuiyu boards.
 //
 //   lihuiyu:usb                      the first board (USB 1a86:5512)
-//   lihuiyu:usb?bus=1&address=4      that one
+//   lihuiyu:usb?bus=1&address=4      that one, until it is plugged in again
+//   lihuiyu:usb?port=1-2.3           the one in that socket
 //   lihuiyu:tcp://host:port          the wire bytes of packet.h over TCP
 //   lihuiyu:/dev/PORT                or over a pty
 //   sim:lihuiyu                      a simulated machine of one's own

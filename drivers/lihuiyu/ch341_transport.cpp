@@ -1,7 +1,6 @@
 #include "drivers/lihuiyu/ch341_transport.h"
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 #include "drivers/lihuiyu/packet.h"
@@ -28,7 +27,7 @@ public:
     // Nothing comes unless a status was asked for.
     std::string read_some(milliseconds timeout) override {
         if (asked_ == 0) {
-            std::this_thread::sleep_for(timeout);
+            pipe_->rest(timeout);
             return {};
         }
         std::string bytes = pipe_->bulk_read(kFirstTransferBytes, timeout);

@@ -99,6 +99,15 @@ std::string write_egv(const EncodedJob& job) {
     return std::string(kHeader) + job.stream() + "\n";
 }
 
+std::vector<CutMove> read_program_moves(std::string_view program, const EncoderOptions& options) {
+    return is_egv(program) ? read_egv(program, options.speed, options.bed)
+                           : read_cut_moves(program);
+}
+
+std::string convert_to_egv(std::string_view program, const EncoderOptions& options) {
+    return write_egv(encode_job(read_program_moves(program, options), {}, options));
+}
+
 std::vector<CutMove> read_egv(std::string_view text,
                               const SpeedModel& model,
                               const LihuiyuBed& bed) {

@@ -24,6 +24,12 @@ bool is_egv(std::string_view text);
 
 std::string write_egv(const EncodedJob& job);
 
+// A program (G-code or EGV) as an EGV file for a head that stands at home. Throws ProgramRefused.
+std::string convert_to_egv(std::string_view program, const EncoderOptions& options);
+
+// The moves of a program (G-code or EGV). Throws ProgramRefused.
+std::vector<CutMove> read_program_moves(std::string_view program, const EncoderOptions& options);
+
 // The moves of a file, in program coordinates of `bed`, from a head that stands at home. Throws
 // ProgramRefused for what isn't a cutting program (raster, unknown bytes, a program cut short).
 std::vector<CutMove> read_egv(std::string_view text,

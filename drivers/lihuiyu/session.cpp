@@ -72,9 +72,7 @@ void LihuiyuSession::queue(const Payload& payload, Purpose purpose) {
 void LihuiyuSession::start(std::string_view program) {
     require_homed("start");
     require_idle("start");
-    const std::vector<CutMove> moves =
-        is_egv(program) ? read_egv(program, options_.speed, options_.bed) : read_cut_moves(program);
-    const EncodedJob job = encode_job(moves, place_, options_);
+    const EncodedJob job = encode_job(read_program_moves(program, options_), place_, options_);
     for (const JobPacket& packet : job.packets) {
         packets_.push_back({packet.payload, Purpose::Job, packet.seconds, packet.end});
     }

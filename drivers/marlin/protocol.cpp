@@ -36,29 +36,31 @@ bool is_resend(std::string_view line) {
 }
 
 bool is_halt(std::string_view line) {
-    return starts_with(line, "!!") || line.find("Printer halted") != std::string_view::npos ||
-           line.find("Alarm lock") != std::string_view::npos;
+    constexpr std::string_view kSigns[] = {"Printer halted", "Alarm lock", "Entering Alarm",
+                                           "exit HALT state"};
+    return starts_with(line, "!!") || starts_with(line, "ALARM:") ||
+           std::any_of(std::begin(kSigns), std::end(kSigns), [line](std::string_view sign) {
+               return line.find(sign) != std::string_view::npos;
+           });
 }
 
-MarlinEvent::Kind kind_of(std::string_view line) {
+// What comes without having been asked for, and answers that are no "ok".
+MarlinEvent::Kind kind_of_notice(std::string_view line) {
     using Kind = MarlinEvent::Kind;
-    if (is_ack(line)) {
-        return Kind::Ack;
-    }
-    if (is_resend(line)) {
-        return Kind::Resend;
-    }
-    if (is_halt(line)) {
-        return Kind::Halted;
-    }
-    if (starts_with(line, "Error:") || starts_with(line, "error:")) {
-        return Kind::Error;
-    }
-    if (starts_with(line, "echo:busy") || starts_with(line, "busy:") || line == "wait") {
+    if (starts_with(line, "echo:busy") || starts_with(line, "busy:")) {
         return Kind::Busy;
+    }
+    if (starts_with(line, "echo:Unknown command")) {
+        return Kind::Unknown;
+    }
+    if (line == "wait") {
+        return Kind::Waiting;
     }
     if (line == "start" || line == "Smoothie") {
         return Kind::Restart;
+    }
+    if (starts_with(line, "Grbl")) {
+        return Kind::Foreign;
     }
     if (line.front() == '<' && line.back() == '>') {
         return Kind::Status;
@@ -72,6 +74,22 @@ MarlinEvent::Kind kind_of(std::string_view line) {
     return starts_with(line, "X:") && parse_position(line) ? Kind::Position : Kind::Other;
 }
 
+MarlinEvent::Kind kind_of(std::string_view line) {
+    using Kind = MarlinEvent::Kind;
+    if (is_halt(line)) {
+        return Kind::Halted;
+    }
+    if (is_ack(line)) {
+        return Kind::Ack;
+    }
+    if (is_resend(line)) {
+        return Kind::Resend;
+    }
+    if (starts_with(line, "Error:") || starts_with(line, "error:")) {
+        return Kind::Error;
+    }
+    return kind_of_notice(line);
+}
 std::optional<double> value_of(std::string_view text, std::string_view name) {
     const std::size_t at = text.find(name);
     if (at == std::string_view::npos) {

@@ -21,9 +21,12 @@ struct MarlinEvent {
         Ack,
         Resend,      // From line `number` on.
         Error,       // What was wrong; a Resend follows where that helps.
+        Unknown,     // It doesn't know the command, and did nothing.
         Halted,      // Killed: answers nothing but a reset (Marlin) or M999 (Smoothieware).
         Busy,        // Works on a line that takes long.
         Restart,     // Power was gone or a reset came.
+        Waiting,     // It has nothing to do.
+        Foreign,     // The greeting of a Grbl.
         Position,    // Answer to M114.
         Status,      // Smoothieware's answer to '?'.
         Firmware,    // FIRMWARE_NAME:…

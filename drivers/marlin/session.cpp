@@ -12,14 +12,12 @@ namespace leafcutter::drivers {
 
 namespace {
 
-using std::chrono::milliseconds;
-
-constexpr milliseconds kPollInterval{1000};
-// Marlin says "busy" every two seconds while a line takes long; nothing for longer means that an
-// answer was lost.
-constexpr milliseconds kNudgeAfter{2000};
-constexpr std::size_t kKept = 64;  // Sent lines that may be asked for again.
 constexpr char kReset = 0x18;
+
+// Smoothieware's own shell hears a line only without a number, and answers without an ok.
+bool is_shell_line(std::string_view line) {
+    return line[0] == '$' || (line[0] >= 'a' && line[0] <= 'z');
+}
 
 // Lights the beam whether or not the head moves: M3 or M4 without I on Marlin.
 bool lights_standing_beam(std::string_view line) {
@@ -35,7 +33,7 @@ bool lights_standing_beam(std::string_view line) {
 }  // namespace
 
 MarlinSession::MarlinSession(Firmware firmware, Time now)
-    : firmware_(firmware), now_(now), phase_since_(now), heard_(now) {
+    : firmware_(firmware), now_(now), phase_since_(now), heard_(now), answered_(now) {
     progress_.outcome = JobOutcome::Done;
     status_.state = MachineState::Unknown;
 }
@@ -58,6 +56,7 @@ void MarlinSession::tick(Time now) {
     }
     watch_silence();
     watch_attach();
+    quick_stop();
     nudge();
     poll();
     fill();
@@ -104,7 +103,9 @@ void MarlinSession::require_ready(std::string_view what) const {
 
 void MarlinSession::start(std::string_view text) {
     require_ready("start");
-    if (!commands_.empty() || status_.state != MachineState::Idle) {
+    const auto by_hand = [](const Pending& line) { return line.origin == Origin::Command; };
+    if (std::any_of(commands_.begin(), commands_.end(), by_hand) ||
+        status_.state != MachineState::Idle) {
         throw Refused(fmt::format("start: the machine is busy ({}); it must be idle",
                                   to_string(status_.state)));
     }
@@ -133,15 +134,14 @@ void MarlinSession::start(std::string_view text) {
 }
 
 void MarlinSession::hold() {
-    if (!job_runs()) {
+    if (!job_runs() || holding_ || cancelling_) {
         return;
     }
     holding_ = true;
     status_.state = MachineState::Hold;
-    status_.message = smoothie() ? "" : "holds once the moves under way have ended";
-    if (smoothie()) {
-        output_ += '!';
-    }
+    status_.message = "holds once the moves under way have ended";
+    put_beam_out();
+    fill();
 }
 
 void MarlinSession::resume() {
@@ -151,9 +151,7 @@ void MarlinSession::resume() {
     holding_ = false;
     status_.message.clear();
     status_.state = MachineState::Run;
-    if (smoothie()) {
-        output_ += '~';
-    }
+    restore_beam();
     fill();
 }
 
@@ -169,11 +167,8 @@ void MarlinSession::cancel() {
     }
     cancelling_ = job_runs();
     holding_ = false;
-    if (emergency_parser_) {
-        output_ += "M410\n";  // Taken out of the stream: the planner is emptied at once.
-    }
-    commands_.push_back({Origin::Frame, "M5", 0, 0});
-    commands_.push_back({Origin::Frame, "M400", 0, 0});
+    quick_stop_due_ = emergency_parser_;
+    put_beam_out();
     fill();
 }
 
@@ -194,13 +189,14 @@ void MarlinSession::stop() {
 void MarlinSession::home() {
     require_ready("home");
     command_state(MachineState::Home);
-    submit("G28 X Y");
+    const bool park = smoothie() && grbl_mode_;  // There a plain G28 only parks.
+    submit(smoothie() ? (park ? "G28.2 X0 Y0" : "G28 X0 Y0") : "G28 X Y");
     submit("M400");
 }
 
 void MarlinSession::unlock() {
     if (phase_ == Phase::Killed && smoothie()) {
-        phase_ = Phase::Greeting;
+        phase_ = Phase::Unlocking;
         phase_since_ = now_;
         output_ += "M999\n";
         return;
@@ -232,7 +228,7 @@ void MarlinSession::jog_cancel() {
     const auto is_move = [](const Pending& line) { return line.text.substr(0, 2) == "G0"; };
     commands_.erase(std::remove_if(commands_.begin(), commands_.end(), is_move), commands_.end());
     if (emergency_parser_) {
-        output_ += "M410\n";
+        send_unnumbered("M410");
     }
 }
 
@@ -249,12 +245,26 @@ void MarlinSession::console(std::string_view line) {
         return;
     }
     require_ready("console");
+    if (smoothie() && is_shell_line(line)) {
+        console_shell(line);
+        return;
+    }
     try {
-        numbered_line(next_number_ + kKept, line);
+        numbered_line(next_number_ + commands_.size(), line);
     } catch (const std::invalid_argument& wrong) {
         throw Refused(fmt::format("console: {}", wrong.what()));
     }
     submit(std::string(line));
+}
+
+void MarlinSession::console_shell(std::string_view line) {
+    constexpr std::string_view kFire = "fire";
+    const bool fires = line.substr(0, kFire.size()) == kFire;
+    const std::string_view rest = line.substr(std::min(kFire.size() + 1, line.size()));
+    if (fires && rest != "off" && rest != "status" && rest.find(' ') == std::string_view::npos) {
+        throw Refused("console: fire needs a time (\"fire 10 200\": 10 % for 200 ms), or off");
+    }
+    output_ += fmt::format("{}\n", line);
 }
 
 void MarlinSession::lose_link(const std::string& reason) {
@@ -275,76 +285,13 @@ void MarlinSession::command_state(MachineState state) {
     status_.state = state;
 }
 
-// ---- Sending ----
-
-bool MarlinSession::may_send() const {
-    return phase_ == Phase::Ready && now_ >= quiet_until_ && pending_.size() < window_;
-}
-
-void MarlinSession::fill() {
-    while (may_send()) {
-        std::deque<Pending>* source = &again_;
-        if (again_.empty()) {
-            const bool job = job_runs() && !cancelling_ && !holding_ && !job_.empty() &&
-                             (job_.front().origin != Origin::Job ||
-                              may_send_line(progress_.lines_sent));
-            source = commands_.empty() && job ? &job_ : &commands_;
-        }
-        if (source->empty()) {
-            return;
-        }
-        Pending line = std::move(source->front());
-        source->pop_front();
-        send(std::move(line));
-    }
-}
-
-void MarlinSession::send(Pending line) {
-    const bool first = line.number == 0;
-    if (first) {
-        line.number = next_number_++;
-        progress_.lines_sent += line.origin == Origin::Job ? 1 : 0;
-    }
-    output_ += numbered_line(line.number, line.text);
-    sent_at_ = now_;
-    pending_.push_back(line);
-    if (first) {
-        history_.push_back(std::move(line));
-        if (history_.size() > kKept) {
-            history_.pop_front();
-        }
-    }
-}
-
-void MarlinSession::poll() {
-    if (phase_ != Phase::Ready || now_ - polled_ < kPollInterval) {
-        return;
-    }
-    const auto of_poll = [](const Pending& line) { return line.origin == Origin::Poll; };
-    if (std::none_of(commands_.begin(), commands_.end(), of_poll) &&
-        std::none_of(pending_.begin(), pending_.end(), of_poll)) {
-        polled_ = now_;
-        commands_.push_back({Origin::Poll, "M114", 0, 0});
-    }
-}
-
-// Beyond the window: the controller has room for it, and its answer says what became of the lines
-// before it.
-void MarlinSession::nudge() {
-    const auto of_nudge = [](const Pending& line) { return line.origin == Origin::Nudge; };
-    if (phase_ != Phase::Ready || pending_.empty() || now_ < quiet_until_ ||
-        now_ - std::max(heard_, sent_at_) < kNudgeAfter ||
-        std::any_of(pending_.begin(), pending_.end(), of_nudge)) {
-        return;
-    }
-    send({Origin::Nudge, "M114", 0, 0});
-}
-
 // ---- Ending ----
 
 void MarlinSession::end_job(JobOutcome outcome, std::string reason) {
     job_.clear();
     holding_ = cancelling_ = false;
+    beam_line_.clear();
+    power_word_.clear();
     if (job_runs()) {
         progress_.outcome = outcome;
         progress_.reason = std::move(reason);
@@ -359,6 +306,8 @@ void MarlinSession::forget_lines() {
     history_.clear();
     again_.clear();
     commands_.clear();
+    quick_stop_due_ = idle_told_ = false;
+    positions_owed_ = positions_heard_ = 0;
 }
 
 }  // namespace leafcutter::drivers

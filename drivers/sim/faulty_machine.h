@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "drivers/sim/grbl_machine.h"
+#include "drivers/sim/sim_machine.h"
 
 namespace leafcutter::drivers {
 
@@ -39,15 +40,20 @@ Fault parse_fault(std::string_view text);
 // std::invalid_argument.
 std::vector<Fault> parse_faults(std::string_view text);
 
-class FaultyMachine {
+class FaultyMachine final : public SimMachine {
 public:
     explicit FaultyMachine(const GrblMachineOptions& options, std::vector<Fault> faults = {});
 
-    // As of GrblMachine.
-    std::string feed(std::string_view bytes);
-    std::string advance(double seconds);
+    std::string feed(std::string_view bytes) override;
+    std::string advance(double seconds) override;
+    bool at_rest() const override { return machine_.at_rest(); }
+    bool unplugged() const override { return unplugged_; }
+    void power_cycle() override { machine_.power_cycle(); }
+    double now_s() const override { return machine_.now_s(); }
+    double beam_power() const override { return machine_.beam_power(); }
+    const BeamLog& beam_log() const override { return machine_.beam_log(); }
+    BeamLog& beam_log() override { return machine_.beam_log(); }
 
-    bool unplugged() const { return unplugged_; }
     // It never will again, once it has stalled, lost its power or its link.
     bool hears() const { return !silent_; }
 

@@ -192,6 +192,16 @@ bool LihuiyuMachine::take_realtime(std::string_view payload) {
     return false;
 }
 
+// The head stays where it is, and nobody knows where that is.
+void LihuiyuMachine::power_cycle() {
+    stop();
+    interpreter_.reset();
+    wire_.clear();
+    out_.clear();
+    last_was_bad_ = false;
+    finished_until_s_ = busy_until_s_ = now_s_;
+}
+
 void LihuiyuMachine::stop() {
     if (motion_) {
         log_burn();
@@ -208,32 +218,38 @@ void LihuiyuMachine::stop() {
 
 // ---- Motion ----
 
-void LihuiyuMachine::advance(double seconds) {
+std::string LihuiyuMachine::advance(double seconds) {
     const double end = now_s_ + seconds;
     while (now_s_ < end) {
         if (paused_) {
             now_s_ = end;
-            return;
-        }
-        if (motion_) {
+        } else if (motion_) {
             move_for(end - now_s_);
         } else if (!fetch()) {
             stand_for(end - now_s_);
         }
     }
+    return {};  // It speaks when asked.
 }
 
-void LihuiyuMachine::hurry() {
+std::string LihuiyuMachine::hurry() {
     constexpr double kTurnS = 0.1;
     constexpr int kMostTurns = 20;
     int turns = 0;
     do {
         advance(kTurnS);
     } while (busy() && !homing() && !paused_ && ++turns < kMostTurns);
+    return {};
 }
 
 bool LihuiyuMachine::at_rest() const {
     return (!motion_ && queue_.empty() && actions_.empty()) || paused_;
+}
+
+std::vector<Violation> LihuiyuMachine::take_violations() {
+    const auto first = violations_.begin() + static_cast<std::ptrdiff_t>(violations_told_);
+    violations_told_ = violations_.size();
+    return {first, violations_.end()};
 }
 
 bool LihuiyuMachine::beam_on() const {

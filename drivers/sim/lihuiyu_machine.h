@@ -19,7 +19,7 @@
 #include "drivers/lihuiyu/encoder.h"
 #include "drivers/lihuiyu/interpreter.h"
 #include "drivers/lihuiyu/packet.h"
-#include "drivers/sim/beam_log.h"
+#include "drivers/sim/sim_machine.h"
 
 namespace leafcutter::drivers {
 
@@ -52,36 +52,33 @@ struct LihuiyuMachineOptions {
     std::optional<LihuiyuFault> fault;
 };
 
-struct Violation {
-    double t_s = 0.0;
-    std::string text;
-};
-
-class LihuiyuMachine {
+class LihuiyuMachine final : public SimMachine {
 public:
     explicit LihuiyuMachine(const LihuiyuMachineOptions& options = {});
 
-    // Takes any split of the host's bytes; returns the board's answers.
-    std::string feed(std::string_view bytes);
-    void advance(double seconds);
+    std::string feed(std::string_view bytes) override;
+    std::string advance(double seconds) override;
 
     // A tenth of a second, or more as long as it is busy with data, 2 s at most: for a sender that
     // isn't to wait.
-    void hurry();
+    std::string hurry() override;
 
-    // Nothing moves and nothing is left to do.
-    bool at_rest() const;
+    void power_cycle() override;
+    bool waits_for_questions() const override { return true; }
+    bool at_rest() const override;
+    bool unplugged() const override { return unplugged_; }
+    double beam_power() const override { return beam_on() ? 1.0 : 0.0; }
+    double now_s() const override { return now_s_; }
+    const BeamLog& beam_log() const override { return log_; }
+    BeamLog& beam_log() override { return log_; }
+    std::vector<Violation> take_violations() override;
 
-    bool unplugged() const { return unplugged_; }
     bool beam_on() const;
     bool paused() const { return paused_; }
-    double now_s() const { return now_s_; }
     PlaceMm position_mm() const;  // In program coordinates.
     std::size_t packets() const { return packets_; }
     std::size_t programs_finished() const { return programs_finished_; }
     const std::vector<Violation>& violations() const { return violations_; }
-    const BeamLog& beam_log() const { return log_; }
-    BeamLog& beam_log() { return log_; }
 
 private:
     struct Motion {
@@ -115,6 +112,7 @@ private:
     LihuiyuInterpreter interpreter_;
     BeamLog log_;
     std::vector<Violation> violations_;
+    std::size_t violations_told_ = 0;
 
     std::string wire_;  // Of a packet not yet whole.
     std::string out_;

@@ -21,15 +21,10 @@ using std::chrono::milliseconds;
 class SimUsbPipe final : public UsbPipe {
 public:
     explicit SimUsbPipe(const SimLihuiyuOptions& options)
-        : machine_(options.machine), speed_(options.speed), before_(Clock::now()) {
-        if (!options.burn_path.empty()) {
-            burn_file_.open(options.burn_path, std::ios::trunc);
-            if (!burn_file_) {
-                throw std::invalid_argument(options.burn_path +
-                                            ": the beam log can't be written there");
-            }
-        }
-    }
+        : machine_(options.machine),
+          speed_(options.host.speed),
+          before_(Clock::now()),
+          burn_file_(open_burn_file(options.host.burn_path)) {}
     SimUsbPipe(const SimUsbPipe&) = delete;
     SimUsbPipe& operator=(const SimUsbPipe&) = delete;
     ~SimUsbPipe() override {
@@ -55,6 +50,9 @@ public:
         answers_.erase(0, bytes.size());
         return bytes;
     }
+
+    // The machine waits for questions.
+    void rest(milliseconds time) override { std::this_thread::sleep_for(time); }
 
     std::string description() const override { return "simulated Lihuiyu board"; }
 
@@ -97,13 +95,13 @@ SimLihuiyuOptions parse_simulated_lihuiyu(std::string_view query) {
         const std::string_view key = pair.substr(0, equals);
         const std::string_view value = pair.substr(std::min(equals + 1, pair.size()));
         if (key == "burn") {
-            options.burn_path = value;
+            options.host.burn_path = value;
         } else if (key == "fault") {
             options.machine.fault = parse_lihuiyu_fault(value);
         } else if (key == "speed") {
             const char* const last = value.data() + value.size();
-            const auto [stop, error] = std::from_chars(value.data(), last, options.speed);
-            if (error != std::errc{} || stop != last || !(options.speed >= 0.0)) {
+            const auto [stop, error] = std::from_chars(value.data(), last, options.host.speed);
+            if (error != std::errc{} || stop != last || !(options.host.speed >= 0.0)) {
                 throw std::invalid_argument("sim:lihuiyu: speed must be a number of 0 or more");
             }
         } else if (!set_lihuiyu_option(key, value, options.encoder)) {

@@ -9,6 +9,7 @@
 
 #include "drivers/lihuiyu/encoder.h"
 #include "drivers/sim/lihuiyu_machine.h"
+#include "drivers/sim/sim_host.h"
 #include "drivers/usb_pipe.h"
 
 namespace leafcutter::drivers {
@@ -16,8 +17,7 @@ namespace leafcutter::drivers {
 struct SimLihuiyuOptions {
     EncoderOptions encoder;  // Of its sender; board and bed are those of the machine.
     LihuiyuMachineOptions machine;
-    double speed = 1.0;     // Simulated seconds per second; 0: as fast as it can be computed.
-    std::string burn_path;  // Beam log as JSON lines; empty: none is written.
+    SimHostOptions host;
 };
 
 // "burn=FILE&speed=N&fault=SPEC" and the settings of lihuiyu/address.h, all optional. Throws

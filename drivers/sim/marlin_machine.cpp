@@ -1,88 +1,121 @@
 #include "drivers/sim/marlin_machine.h"
 
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "drivers/gcode_words.h"
+#include "drivers/sim/numbered_line.h"
 
 namespace leafcutter::drivers {
 
 namespace {
 
-constexpr double kBusyEvery = 2.0;
-constexpr MotionLimits kLimits{{200.0, 200.0, 10.0}, {1000.0, 1000.0, 100.0}, 0.01};
-const GcodeInterpreter::Rules kRules{true, 0.01, {80.0, 80.0, 80.0}};
+constexpr std::size_t kLongestLine = 95;  // MAX_CMD_SIZE 96 with its end.
+constexpr double kCleaningS = 1.0;
+constexpr double kStepsPerMm = 80.0;
+constexpr std::string_view kGreeting = "start\necho:Marlin 2.1.2\n";
 
 bool starts_with(std::string_view text, std::string_view start) {
     return text.substr(0, start.size()) == start;
 }
 
-std::size_t number_at(std::string_view text) {
-    std::size_t number = 0;
-    std::from_chars(text.data(), text.data() + text.size(), number);
-    return number;
+bool is_beam_command(std::string_view stripped) {
+    const bool word =
+        stripped.size() > 1 && stripped[0] == 'M' && stripped[1] >= '3' && stripped[1] <= '5';
+    return word && (stripped.size() == 2 || stripped[2] < '0' || stripped[2] > '9');
 }
 
 }  // namespace
 
-MarlinMachine::MarlinMachine(const MarlinMachineOptions& options) : options_(options) {
-    out_ = "start\necho:Marlin 2.1.2\n";
-    interpreter_.reset({});
+MarlinMachine::MarlinMachine(const MarlinMachineOptions& options)
+    : options_(options), out_(kGreeting) {}
+
+bool MarlinMachine::at_rest() const {
+    return killed_ || (queue_.empty() && rx_.empty() && runner_.at_rest() && !line_pending_);
 }
 
 double MarlinMachine::beam_power() const {
-    return killed_ ? 0.0 : motion_.running_power().value_or(0.0);
+    return killed_ ? 0.0 : runner_.beam_power();
+}
+
+void MarlinMachine::power_cycle() {
+    runner_.drop_planned();
+    runner_.drop_line();
+    rx_.clear();
+    partial_.clear();
+    queue_.clear();
+    line_pending_ = killed_ = false;
+    last_number_ = 0;
+    out_ += kGreeting;
 }
 
 std::string MarlinMachine::feed(std::string_view bytes) {
     for (const char byte : bytes) {
-        if (byte != '\n') {
-            partial_ += byte;
-            continue;
+        if (killed_) {
+            break;
         }
-        std::string line = std::exchange(partial_, {});
-        if (killed_ || line.empty()) {
-            continue;
+        if (options_.emergency_parser) {
+            watch_emergency(byte);
         }
-        ++heard_;
-        if (options_.drop_line == heard_) {
-            continue;
+        if (rx_.size() < kRxBytes) {
+            rx_.push_back(byte);
+        } else {
+            ++bytes_dropped_;
         }
-        if (options_.flip_bit == heard_) {
-            line[line.size() / 2] = static_cast<char>(line[line.size() / 2] ^ 1);
-        }
-        emergency(line);
-        take_line(std::move(line));
         work();
     }
     work();
     return std::exchange(out_, {});
 }
 
-// Taken out of the stream as they arrive, without waiting for their turn.
-void MarlinMachine::emergency(std::string_view line) {
-    if (!options_.emergency_parser) {
+// What arrives is heard at once, whatever waits before it.
+void MarlinMachine::watch_emergency(char byte) {
+    if (byte != '\n' && byte != '\r') {
+        emergency_ += byte;
         return;
     }
-    if (line == "M112") {
+    const std::string line = read_numbered_line(std::exchange(emergency_, {})).text;
+    if (starts_with(line, "M112")) {
         kill();
-    } else if (line == "M410") {
-        motion_.clear(now_s_, log_);
-        actions_.clear();
-        interpreter_.set_position(motion_.position_mm());
+    } else if (starts_with(line, "M410")) {
+        quick_stop();
     }
+}
+
+void MarlinMachine::quick_stop() {
+    runner_.drop_planned();
+    cleaning_until_s_ = now_s() + kCleaningS;
 }
 
 void MarlinMachine::kill() {
     killed_ = true;
-    motion_.clear(now_s_, log_);
+    runner_.drop_planned();
+    runner_.drop_line();
     queue_.clear();
-    actions_.clear();
+    rx_.clear();
+    partial_.clear();
     out_ += "Error:Printer halted. kill() called!\n";
 }
 
+void MarlinMachine::read() {
+    while (queue_.size() < kLines && !rx_.empty() && !killed_) {
+        const char byte = rx_.front();
+        rx_.pop_front();
+        if (byte != '\n' && byte != '\r') {
+            if (partial_.size() < kLongestLine) {
+                partial_ += byte;
+            }
+        } else if (!partial_.empty()) {
+            take_line(std::exchange(partial_, {}));
+        }
+    }
+}
+
 void MarlinMachine::ask_again(std::string_view why) {
+    rx_.clear();
     out_ +=
         fmt::format("Error:{}, Last Line: {}\nResend: {}\n", why, last_number_, last_number_ + 1);
     if (options_.ok_after_resend) {
@@ -90,112 +123,84 @@ void MarlinMachine::ask_again(std::string_view why) {
     }
 }
 
-void MarlinMachine::take_line(std::string line) {
-    if (killed_) {
-        return;
-    }
-    if (line.front() == 'N') {
-        const std::size_t star = line.rfind('*');
-        if (star == std::string::npos) {
-            ask_again("No Checksum with line number");
-            return;
-        }
-        unsigned sum = 0;
-        for (std::size_t i = 0; i < star; ++i) {
-            sum ^= static_cast<unsigned char>(line[i]);
-        }
-        const std::size_t number = number_at(std::string_view(line).substr(1));
-        const bool sets = line.find("M110") != std::string::npos;
-        if (number_at(std::string_view(line).substr(star + 1)) != sum) {
-            ask_again("checksum mismatch");
-            return;
-        }
-        if (number != last_number_ + 1 && !sets) {
+void MarlinMachine::take_line(std::string_view line) {
+    NumberedLine read = read_numbered_line(line);
+    if (read.number) {
+        if (*read.number != last_number_ + 1 && !read.sets_number) {
             ask_again("Line Number is not Last Line Number+1");
             return;
         }
-        last_number_ = number;
-        const std::size_t blank = line.find(' ');
-        line = blank == std::string::npos ? "" : line.substr(blank + 1, star - blank - 1);
+        if (!read.sum_holds) {
+            ask_again(read.has_sum ? "checksum mismatch" : "No Checksum with line number");
+            return;
+        }
+        last_number_ = *read.number;
     }
-    if (queue_.size() >= kLines) {
-        ++overruns_;
+    // Without the emergency parser these are heard when they are read, not when it is their turn.
+    if (!options_.emergency_parser && !read.number && starts_with(read.text, "M112")) {
+        kill();
         return;
     }
-    queue_.push_back({std::move(line), last_number_});
+    if (!options_.emergency_parser && !read.number && starts_with(read.text, "M410")) {
+        quick_stop();
+    }
+    queue_.push_back({std::move(read.text), last_number_});
 }
 
 void MarlinMachine::answer() {
-    ++answered_;
     line_pending_ = false;
-    if (options_.drop_ok == answered_) {
-        return;
-    }
     out_ += options_.advanced_ok
-                ? fmt::format("ok N{} P{} B{}\n", running_, MotionQueue::kCapacity - motion_.size(),
-                              kLines - queue_.size())
+                ? fmt::format("ok N{} P{} B{}\n", running_,
+                              MotionQueue::kCapacity - runner_.planned(), kLines - queue_.size())
                 : "ok\n";
 }
 
-bool MarlinMachine::perform(const Action& action) {
-    using Kind = Action::Kind;
-    if (action.kind == Kind::Move) {
-        if (motion_.full()) {
-            return false;
-        }
-        motion_.push(action.move, kLimits);
-        return true;
+// Commands of Marlin that Grbl doesn't have. Returns whether this is one.
+bool MarlinMachine::run_own(const std::string& line, const std::string& stripped) {
+    if (starts_with(stripped, "M115")) {
+        out_ +=
+            fmt::format("FIRMWARE_NAME:Marlin 2.1.2 SOURCE_CODE_URL:x\nCap:EMERGENCY_PARSER:{}\n",
+                        options_.emergency_parser ? 1 : 0);
+    } else if (starts_with(stripped, "M114")) {
+        const Axes& planned = runner_.planned_mm();
+        const Axes& at = runner_.position_mm();
+        const auto steps = [&at](std::size_t axis) { return std::lround(at[axis] * kStepsPerMm); };
+        out_ += fmt::format("X:{:.2f} Y:{:.2f} Z:{:.2f} E:0.00 Count X:{} Y:{} Z:{}\n", planned[0],
+                            planned[1], planned[2], steps(0), steps(1), steps(2));
+    } else if (starts_with(stripped, "M113S") && options_.keeps_alive) {
+        busy_every_s_ = std::strtod(stripped.c_str() + 5, nullptr);
+    } else if (starts_with(stripped, "M118") && options_.knows_m118) {
+        out_ += fmt::format("{}\n", line.substr(std::min<std::size_t>(5, line.size())));
+    } else if (starts_with(stripped, "M400")) {
+        runner_.wait_for_stand();
+    } else if (starts_with(stripped, "G28")) {
+        runner_.home();
+    } else {
+        constexpr std::string_view kSilent[] = {"M110", "M112", "M410"};
+        return std::any_of(std::begin(kSilent), std::end(kSilent),
+                           [&](std::string_view word) { return starts_with(stripped, word); });
     }
-    // Inline power is for moves: M3, M4 and M5 wait for nothing and light nothing that stands.
-    return action.kind == Kind::Beam || action.kind == Kind::Offset || motion_.empty();
-}
-
-void MarlinMachine::run_own(std::string_view line) {
-    if (starts_with(line, "M115")) {
-        out_ += fmt::format(
-            "FIRMWARE_NAME:Marlin 2.1.2 SOURCE_CODE_URL:x\n"
-            "Cap:EMERGENCY_PARSER:{}\n",
-            options_.emergency_parser ? 1 : 0);
-    } else if (starts_with(line, "M114")) {
-        const Axes& at = motion_.end_mm();
-        out_ += fmt::format("X:{:.2f} Y:{:.2f} Z:{:.2f} E:0.00 Count X:0 Y:0 Z:0\n", at[0], at[1],
-                            at[2]);
-    } else if (starts_with(line, "M400")) {
-        waits_for_stand_ = true;
-    } else if (starts_with(line, "M112")) {
-        kill();
-    } else if (starts_with(line, "G28")) {
-        motion_.clear(now_s_, log_);
-        motion_.set_position({});
-        interpreter_.set_position({});
-    }
+    return true;
 }
 
 void MarlinMachine::run(const std::string& line) {
     line_pending_ = true;
     const std::string stripped = strip_gcode(line);
-    constexpr std::string_view kOwn[] = {"M115", "M114", "M400", "M112", "M110", "M410", "G28"};
-    const bool own = std::any_of(std::begin(kOwn), std::end(kOwn), [&](std::string_view word) {
-        return starts_with(stripped, word);
-    });
-    if (own) {
-        run_own(stripped);
+    if (run_own(line, stripped)) {
         return;
     }
-    Interpretation read = interpreter_.run(without_inline_word(stripped), kRules);
-    if (read.error != 0) {
+    const bool beam = is_beam_command(stripped);
+    if ((beam && !options_.knows_lasers) || runner_.begin(without_inline_word(stripped)) != 0) {
         out_ += fmt::format("echo:Unknown command: \"{}\"\n", line);
+    } else if (beam && stripped.find('I') == std::string::npos) {
+        runner_.wait_for_stand();
     }
-    actions_.assign(read.actions.begin(), read.actions.end());
 }
 
 void MarlinMachine::work() {
     while (!killed_) {
-        while (!actions_.empty() && perform(actions_.front())) {
-            actions_.pop_front();
-        }
-        waits_for_stand_ = waits_for_stand_ && !motion_.empty();
-        if (!actions_.empty() || waits_for_stand_) {
+        read();
+        if (now_s() < cleaning_until_s_ || !runner_.work()) {
             return;
         }
         if (line_pending_) {
@@ -211,19 +216,30 @@ void MarlinMachine::work() {
     }
 }
 
-std::string MarlinMachine::advance(double seconds) {
-    const double end = now_s_ + seconds;
-    while (now_s_ < end && !killed_) {
-        const double used =
-            motion_.empty() ? end - now_s_ : motion_.advance(end - now_s_, now_s_, log_);
-        now_s_ += used > 0.0 ? used : end - now_s_;
-        work();
+void MarlinMachine::keep_alive() {
+    if (killed_) {
+        return;
     }
-    now_s_ = end;
-    if (line_pending_ && now_s_ - busy_told_s_ >= kBusyEvery) {
-        busy_told_s_ = now_s_;
+    if (options_.keeps_alive && line_pending_ && now_s() - busy_told_s_ >= busy_every_s_) {
+        busy_told_s_ = now_s();
         out_ += "echo:busy: processing\n";
     }
+    if (options_.temperature_every_s > 0.0 &&
+        now_s() - temperature_told_s_ >= options_.temperature_every_s) {
+        temperature_told_s_ = now_s();
+        out_ += " T:21.56 /0.00 @:0\n";
+    }
+}
+
+std::string MarlinMachine::advance(double seconds) {
+    for (double left = seconds; left > 0.0;) {
+        const bool cleans = cleaning_until_s_ > now_s();
+        const double step = cleans ? std::min(left, cleaning_until_s_ - now_s()) : left;
+        const double used = runner_.advance(step);
+        left = used > 0.0 ? left - used : 0.0;
+        work();
+    }
+    keep_alive();
     return std::exchange(out_, {});
 }
 

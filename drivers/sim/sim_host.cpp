@@ -1,33 +1,42 @@
 #include "drivers/sim/sim_host.h"
 
 #include <stdexcept>
+#include <utility>
 
 namespace leafcutter::drivers {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
 
-constexpr double kFastStep = 0.02;  // Simulated seconds between looks at the wire at speed 0.
-constexpr std::chrono::milliseconds kBusyWait{1};
-constexpr std::chrono::milliseconds kIdleWait{20};
+constexpr milliseconds kBusyWait{1};
+constexpr milliseconds kIdleWait{20};
+constexpr milliseconds kQuestionWait{60};
 
 }  // namespace
 
-SimHost::SimHost(std::unique_ptr<SimLink> link, const SimHostOptions& options)
+std::ofstream open_burn_file(const std::string& path) {
+    std::ofstream file;
+    if (!path.empty()) {
+        file.open(path, std::ios::trunc);
+        if (!file) {
+            throw std::invalid_argument(path + ": the beam log can't be written there");
+        }
+    }
+    return file;
+}
+
+SimHost::SimHost(std::unique_ptr<SimLink> link,
+                 std::unique_ptr<SimMachine> machine,
+                 const SimHostOptions& options)
     : link_(std::move(link)),
       address_(link_->address()),
       speed_(options.speed),
-      machine_(options.machine, options.faults) {
+      burn_file_(open_burn_file(options.burn_path)),
+      machine_(std::move(machine)) {
     if (!(speed_ >= 0.0)) {
         throw std::invalid_argument("speed: must be 0 (as fast as possible) or more");
-    }
-    if (!options.burn_path.empty()) {
-        burn_file_.open(options.burn_path, std::ios::trunc);
-        if (!burn_file_) {
-            throw std::invalid_argument(options.burn_path +
-                                        ": the beam log can't be written there");
-        }
     }
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
@@ -36,18 +45,23 @@ SimHost::~SimHost() {
     thread_.request_stop();
     thread_.join();
     if (burn_file_.is_open()) {
-        machine_.machine().beam_log().flush(burn_file_);
+        machine_->beam_log().flush(burn_file_);
     }
 }
 
 std::vector<BurntPiece> SimHost::burnt() const {
     const std::lock_guard lock(mutex_);
-    return machine_.machine().beam_log().pieces();
+    return std::as_const(*machine_).beam_log().pieces();
 }
 
 double SimHost::beam_power() const {
     const std::lock_guard lock(mutex_);
-    return machine_.machine().beam_power();
+    return machine_->beam_power();
+}
+
+std::vector<Violation> SimHost::take_violations() {
+    const std::lock_guard lock(mutex_);
+    return machine_->take_violations();
 }
 
 void SimHost::run(const std::stop_token& stop) {
@@ -59,29 +73,35 @@ void SimHost::run(const std::stop_token& stop) {
     }
 }
 
-double SimHost::time_to_pass(double wall_s) const {
-    if (speed_ > 0.0) {
-        return wall_s * speed_;
+milliseconds SimHost::wait_for_bytes() const {
+    if (machine_->at_rest()) {
+        return kIdleWait;
     }
-    return machine_.machine().at_rest() ? 0.0 : kFastStep;
+    if (speed_ > 0.0) {
+        return kBusyWait;
+    }
+    return machine_->waits_for_questions() ? kQuestionWait : milliseconds(0);
 }
 
 // One look at the wire, and the machine moved on by the time that passed.
 void SimHost::turn(double wall_s) {
-    const bool resting = machine_.machine().at_rest();
-    const auto busy_wait = speed_ > 0.0 ? kBusyWait : std::chrono::milliseconds(0);
-    const std::string heard = link_->receive(resting ? kIdleWait : busy_wait);
+    const bool resting = machine_->at_rest();
+    const std::string heard = link_->receive(wait_for_bytes());
     std::string said;
     {
         const std::lock_guard lock(mutex_);
-        said = machine_.feed(heard);
-        said += machine_.advance(time_to_pass(wall_s));
-        if (burn_file_.is_open() && !resting && machine_.machine().at_rest()) {
-            machine_.machine().beam_log().flush(burn_file_);
+        said = machine_->feed(heard);
+        if (speed_ > 0.0) {
+            said += machine_->advance(wall_s * speed_);
+        } else if (!resting || !heard.empty()) {
+            said += machine_->hurry();
+        }
+        if (burn_file_.is_open() && !resting && machine_->at_rest()) {
+            machine_->beam_log().flush(burn_file_);
         }
     }
     link_->send(said);
-    if (machine_.unplugged() && !unplugged_) {
+    if (machine_->unplugged() && !unplugged_) {
         unplugged_ = true;
         link_->unplug();
     }

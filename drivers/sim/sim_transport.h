@@ -13,4 +13,8 @@ namespace leafcutter::drivers {
 // a real pty. Throws std::invalid_argument, LinkLost.
 std::unique_ptr<Transport> open_simulated_grbl(std::string_view query);
 
+// "burn=FILE&speed=N&fault=SPEC", the fault as of parse_wire_fault(). Throw the same.
+std::unique_ptr<Transport> open_simulated_marlin(std::string_view query);
+std::unique_ptr<Transport> open_simulated_smoothie(std::string_view query);
+
 }  // namespace leafcutter::drivers

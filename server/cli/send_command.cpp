@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "drivers/device.h"
+#include "drivers/lihuiyu/address.h"
 #include "drivers/lihuiyu/egv.h"
 #include "drivers/transport.h"
 #include "geometry/error.h"
@@ -34,6 +36,7 @@ constexpr std::chrono::seconds kHomeTime{90};
 struct SendOptions {
     std::string program;
     std::string device;
+    std::string egv;
     bool home = false;
 };
 
@@ -109,14 +112,41 @@ void home(drivers::Device& device, const std::stop_token& interrupt) {
     } while (device.status().state != drivers::MachineState::Idle);
 }
 
+constexpr std::string_view kLihuiyu = "lihuiyu:";
+
 bool is_lihuiyu(std::string_view device) {
-    return device.substr(0, 8) == "lihuiyu:" || device.substr(0, 11) == "sim:lihuiyu";
+    return device.substr(0, kLihuiyu.size()) == kLihuiyu || device.substr(0, 11) == "sim:lihuiyu";
+}
+
+// What the device's address says of its board and bed goes into the file; nothing is sent.
+void write_egv_file(const std::string& program, const SendOptions& options) {
+    if (options.device.substr(0, kLihuiyu.size()) != kLihuiyu) {
+        throw UsageError("--egv: needs --device lihuiyu:usb?board=M2 or the like");
+    }
+    std::string egv;
+    try {
+        const std::string_view address = std::string_view(options.device).substr(kLihuiyu.size());
+        egv = drivers::convert_to_egv(program, drivers::parse_lihuiyu_address(address).encoder);
+    } catch (const std::invalid_argument& error) {
+        throw UsageError(error.what());
+    } catch (const drivers::ProgramRefused& error) {
+        throw UsageError(fmt::format("{}: {}", options.program, error.what()));
+    }
+    std::ofstream file(options.egv, std::ios::binary | std::ios::trunc);
+    file << egv;
+    if (!file.flush()) {
+        throw UsageError(options.egv + ": can't be written");
+    }
 }
 
 void send(const SendOptions& options, const CommonOptions& common) {
     std::string program = read_text(options.program);
     if (drivers::is_egv(program) && !is_lihuiyu(options.device)) {
         throw UsageError(options.program + ": EGV files are for lihuiyu devices");
+    }
+    if (!options.egv.empty()) {
+        write_egv_file(program, options);
+        return;
     }
     const InterruptWatch interrupt;
     const std::unique_ptr<drivers::Device> device = open(options.device);
@@ -143,8 +173,12 @@ void add_send_command(CLI::App& app, const CommonOptions& common) {
     command
         ->add_option("--device", options->device,
                      "grbl:/dev/PORT?baud=N, grbl:tcp://host:port, marlin: and smoothie: alike, "
-                     "lihuiyu:usb?bus=N&address=N&board=M2, sim:grbl, sim:lihuiyu")
+                     "lihuiyu:usb?bus=N&address=N&board=M2, sim:grbl, sim:marlin, sim:smoothie, "
+                     "sim:lihuiyu")
         ->required();
+    command->add_option("--egv", options->egv,
+                        "Writes the program as an EGV file for this lihuiyu device, and sends "
+                        "nothing");
     command->add_flag("--home", options->home,
                       "Homes the machine first; a lihuiyu board must be, after power-up or a stop");
     command->callback([options, &common] { send(*options, common); });

@@ -1,8 +1,8 @@
-// `leafcutter simulate grbl|lihuiyu`: a simulated machine that any program can drive, until Ctrl-C.
+// `leafcutter simulate grbl|marlin|smoothie|lihuiyu`: a simulated machine that any program can
+// drive, until Ctrl-C.
 
 #include <chrono>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -13,8 +13,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "drivers/sim/lihuiyu_host.h"
+#include "drivers/sim/faulty_machine.h"
+#include "drivers/sim/faulty_wire.h"
+#include "drivers/sim/lihuiyu_machine.h"
+#include "drivers/sim/marlin_machine.h"
 #include "drivers/sim/sim_host.h"
+#include "drivers/sim/smoothie_machine.h"
 #include "server/cli/burn_picture.h"
 #include "server/cli/command.h"
 #include "server/cli/input_file.h"
@@ -32,7 +36,7 @@ struct SimulateOptions {
     std::string burn_picture;
     std::string fault;
     std::string faults_path;
-    std::optional<double> speed;
+    double speed = 1.0;
     std::optional<double> width_mm;
     std::optional<double> height_mm;
     std::string board = "M2";
@@ -41,17 +45,6 @@ struct SimulateOptions {
 std::unique_ptr<drivers::SimLink> open_link(const SimulateOptions& options) {
     return options.tcp_port ? drivers::open_tcp_link(*options.tcp_port)
                             : drivers::open_pty_link(options.pty);
-}
-
-void run_until_interrupted(const InterruptWatch& interrupt,
-                           const std::string& uri,
-                           const std::function<void()>& look) {
-    std::printf("%s\n", uri.c_str());
-    std::fflush(stdout);
-    while (!interrupt.token().stop_requested()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        look();
-    }
 }
 
 std::vector<drivers::Fault> faults_of(const SimulateOptions& options) {
@@ -66,32 +59,15 @@ std::vector<drivers::Fault> faults_of(const SimulateOptions& options) {
     return faults;
 }
 
-void draw_burn(const SimulateOptions& options, const std::vector<drivers::BurntPiece>& burnt) {
-    if (!options.burn_picture.empty()) {
-        write_burn_picture(options.burn_picture, burnt);
-    }
-}
-
-void simulate_grbl(const SimulateOptions& options) {
-    drivers::SimHostOptions host_options;
-    host_options.burn_path = options.burn_path;
-    host_options.speed = options.speed.value_or(host_options.speed);
-    drivers::GrblMachineOptions& machine = host_options.machine;
+std::unique_ptr<drivers::SimMachine> make_grbl(const SimulateOptions& options) {
+    drivers::GrblMachineOptions machine;
     machine.bed_width_mm = options.width_mm.value_or(machine.bed_width_mm);
     machine.bed_height_mm = options.height_mm.value_or(machine.bed_height_mm);
-    host_options.faults = faults_of(options);
-    const InterruptWatch interrupt;  // Before the machine's thread.
-    const drivers::SimHost host(open_link(options), host_options);
-    run_until_interrupted(interrupt, fmt::format("grbl:{}", host.address()), [] {});
-    draw_burn(options, host.burnt());
+    return std::make_unique<drivers::FaultyMachine>(machine, faults_of(options));
 }
 
-// What the machine complains about goes to stderr, a line each.
-void simulate_lihuiyu(const SimulateOptions& options) {
-    drivers::SimLihuiyuOptions host_options;
-    host_options.burn_path = options.burn_path;
-    host_options.speed = options.speed.value_or(host_options.speed);
-    drivers::LihuiyuMachineOptions& machine = host_options.machine;
+std::unique_ptr<drivers::SimMachine> make_lihuiyu(const SimulateOptions& options) {
+    drivers::LihuiyuMachineOptions machine;
     machine.speed.board = drivers::parse_lihuiyu_board(options.board);
     machine.bed.width_mm = options.width_mm.value_or(machine.bed.width_mm);
     machine.bed.height_mm = options.height_mm.value_or(machine.bed.height_mm);
@@ -99,13 +75,43 @@ void simulate_lihuiyu(const SimulateOptions& options) {
     if (!options.fault.empty()) {
         machine.fault = drivers::parse_lihuiyu_fault(options.fault);
     }
-    const InterruptWatch interrupt;  // Before the machine's thread.
-    drivers::LihuiyuHost host(open_link(options), host_options);
-    run_until_interrupted(interrupt, fmt::format("lihuiyu:{}", host.address()), [&host] {
+    return std::make_unique<drivers::LihuiyuMachine>(machine);
+}
+
+std::unique_ptr<drivers::SimMachine> behind_wire(std::unique_ptr<drivers::SimMachine> machine,
+                                                 const SimulateOptions& options) {
+    if (options.fault.empty()) {
+        return machine;
+    }
+    return std::make_unique<drivers::FaultyWire>(std::move(machine),
+                                                 drivers::parse_wire_fault(options.fault));
+}
+
+std::unique_ptr<drivers::SimMachine> make_machine(const SimulateOptions& options) {
+    if (options.machine == "grbl") {
+        return make_grbl(options);
+    }
+    if (options.machine == "lihuiyu") {
+        return make_lihuiyu(options);
+    }
+    if (options.machine == "marlin") {
+        return behind_wire(std::make_unique<drivers::MarlinMachine>(), options);
+    }
+    if (options.machine == "smoothie") {
+        return behind_wire(std::make_unique<drivers::SmoothieMachine>(), options);
+    }
+    throw UsageError(fmt::format("simulate: \"{}\": must be grbl, marlin, smoothie or lihuiyu",
+                                 options.machine));
+}
+
+// What the machine complains about goes to stderr, a line each.
+void run_until_interrupted(drivers::SimHost& host, const std::stop_token& interrupt) {
+    while (!interrupt.stop_requested()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
         for (const drivers::Violation& violation : host.take_violations()) {
             std::fprintf(stderr, "at %.3f s: %s\n", violation.t_s, violation.text.c_str());
         }
-    });
+    }
 }
 
 void simulate(const SimulateOptions& options) {
@@ -113,12 +119,14 @@ void simulate(const SimulateOptions& options) {
         check_picture_path(options.burn_picture);
     }
     try {
-        if (options.machine == "grbl") {
-            simulate_grbl(options);
-        } else if (options.machine == "lihuiyu") {
-            simulate_lihuiyu(options);
-        } else {
-            throw UsageError("simulate: \"" + options.machine + "\": must be grbl or lihuiyu");
+        const InterruptWatch interrupt;  // Before the machine's thread.
+        drivers::SimHost host(open_link(options), make_machine(options),
+                              {options.speed, options.burn_path});
+        std::printf("%s:%s\n", options.machine.c_str(), host.address().c_str());
+        std::fflush(stdout);
+        run_until_interrupted(host, interrupt.token());
+        if (!options.burn_picture.empty()) {
+            write_burn_picture(options.burn_picture, host.burnt());
         }
     } catch (const std::invalid_argument& error) {
         throw UsageError(error.what());
@@ -131,7 +139,8 @@ void add_simulate_command(CLI::App& app, const CommonOptions& /*common*/) {
     CLI::App* command = app.add_subcommand(
         "simulate", "A simulated machine that any program can drive; prints its device URI");
     const auto options = std::make_shared<SimulateOptions>();  // Lives as long as the callback.
-    command->add_option("machine", options->machine, "grbl or lihuiyu")->required();
+    command->add_option("machine", options->machine, "grbl, marlin, smoothie or lihuiyu")
+        ->required();
     CLI::Option* pty =
         command->add_option("--pty", options->pty, "Path of a symbolic link to its serial port");
     command->add_option("--tcp", options->tcp_port, "Port on the loopback; 0 picks a free one")
@@ -146,7 +155,9 @@ void add_simulate_command(CLI::App& app, const CommonOptions& /*common*/) {
     command->add_option(
         "--fault", options->fault,
         "grbl: drop-byte:N double-byte:N corrupt-byte:N drop-ok:N double-ok:N corrupt-ok:N delay:N "
-        "stall:N alarm:N reset:N power:N unplug:N, at the N-th line, several with commas; lihuiyu: "
+        "stall:N alarm:N reset:N power:N unplug:N, at the N-th line, several with commas; marlin, "
+        "smoothie: flip-bit:N drop-line:N drop-byte:N drop-ok:N garble-ok:N double-ok:N stall:N "
+        "reset:N unplug:N, at the N-th line or answer; lihuiyu: "
         "crc:N crc-always:N busy:N stall:N mute:N power:N lose:N unplug:N, at the N-th packet");
     command->add_option("--width", options->width_mm, "Bed width in mm");
     command->add_option("--height", options->height_mm, "Bed height in mm");

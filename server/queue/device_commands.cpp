@@ -107,6 +107,14 @@ void DeviceRunner::reset() {
     nudged_.notify_all();
 }
 
+void DeviceRunner::look_for_machine() {
+    {
+        const std::scoped_lock lock(mutex_);
+        plugged_in_ = true;
+    }
+    nudged_.notify_all();
+}
+
 void DeviceRunner::home() {
     device_for_hand_work()->home();
 }

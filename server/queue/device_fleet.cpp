@@ -4,6 +4,7 @@
 #include <thread>
 #include <utility>
 
+#include "drivers/lihuiyu/address.h"
 #include "server/queue/cut_beam.h"
 
 namespace leafcutter::server {
@@ -21,6 +22,11 @@ DeviceFleet::DeviceFleet(Store& store, DeviceHooks hooks)
             inspect && !simulated ? FirstContact::AfterReset : FirstContact::AtOnce;
         runners_[device.id] = std::make_shared<DeviceRunner>(device, store_, hooks_, contact);
     }
+    usb_watch_ = drivers::watch_usb(drivers::kLihuiyuVendor, drivers::kLihuiyuProduct, [this] {
+        for (const std::shared_ptr<DeviceRunner>& runner : all()) {
+            runner->look_for_machine();
+        }
+    });
 }
 
 std::shared_ptr<DeviceRunner> DeviceFleet::find(const std::string& id) const {

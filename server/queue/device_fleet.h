@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/usb_watch.h"
 #include "server/queue/device_runner.h"
 
 namespace leafcutter::server {
@@ -37,6 +38,7 @@ private:
     std::mutex changing_;       // One put or remove at a time: each waits for a runner's end.
     mutable std::mutex mutex_;  // Guards runners_.
     std::map<std::string, std::shared_ptr<DeviceRunner>> runners_;
+    std::unique_ptr<drivers::UsbWatch> usb_watch_;  // Last: it uses everything above.
 };
 
 }  // namespace leafcutter::server

@@ -20,6 +20,7 @@ void DeviceRunner::connect(const std::stop_token& stop) {
             nudged_.wait_for(lock, stop, kPause, [this] { return may_connect_; });
             return;
         }
+        plugged_in_ = false;
     }
     try {
         disarm();
@@ -37,7 +38,7 @@ void DeviceRunner::connect(const std::stop_token& stop) {
         }
         say(error.what());
         std::unique_lock lock(mutex_);
-        nudged_.wait_for(lock, stop, kPause, [] { return false; });
+        nudged_.wait_for(lock, stop, kPause, [this] { return plugged_in_; });
     }
 }
 

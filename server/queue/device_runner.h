@@ -57,6 +57,9 @@ public:
     // There may be an armed cut.
     void wake();
 
+    // Something was plugged in: its machine may be back.
+    void look_for_machine();
+
     // None of these waits for the machine or the database. Those for a cut return false if it is
     // not in work.
     bool pause(const std::string& cut);
@@ -124,6 +127,7 @@ private:
     CutProgress progress_;
     bool abort_wanted_ = false;
     bool may_connect_ = true;
+    bool plugged_in_ = false;
     std::optional<std::string> frame_program_;
     std::string message_;  // Why there is no link.
     std::deque<std::string> lines_;

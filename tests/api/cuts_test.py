@@ -95,15 +95,15 @@ class Served(unittest.TestCase):
 class Machine:
     """A simulated machine of the daemon, and what its beam burnt."""
 
-    def __init__(self, test, name, speed, auto_start=False, more=""):
+    def __init__(self, test, name, speed, auto_start=False, more="", kind="grbl", rests="idle"):
         self.test = test
         self.path = f"/devices/{name}"
         self.name = name
         self.log = Path(test.folder.name) / "state/burns" / f"{name}.jsonl"
-        self.fields = {"name": name, "uri": f"sim:grbl?speed={speed}&burn={self.log}{more}", "auto_start": auto_start}
+        self.fields = {"name": name, "uri": f"sim:{kind}?speed={speed}&burn={self.log}{more}", "auto_start": auto_start}
         status, _, answer = test.ask("PUT", self.path, self.fields)
         test.assertIn(status, (200, 201), answer)
-        self.until("idle")
+        self.until(rests)
 
     def until(self, state):
         return self.test.wait(self.path, lambda device: device["status"]["state"] == state)
@@ -337,6 +337,37 @@ class Machines(CutsOf):
         self.assert_problem(self.ask("PUT", "/devices/LEFT", fields), 422, "bad-field")
         self.assertEqual(self.get("/devices/left")["name"], "Right")
         self.assertEqual(self.ask("DELETE", "/devices/left")[0], 204)
+
+    def test_a_board_that_lost_its_place_must_be_homed_first(self):
+        board = Machine(self, "k40", 30, more="&width=700&height=500", kind="lihuiyu", rests="alarm")
+        path = self.put_cut(board, sheets=[1])
+        cut = self.get(path)
+        consent = {"program_sha256": cut["program_sha256"], "bed_clear": True}
+        self.assertNotIn("start", cut["actions"])
+        self.assert_problem(self.ask("POST", path + "/start", consent), 409, "device-not-ready")
+        self.assertEqual(board.command("jog", dx_mm=1, dy_mm=0, feed_mm_min=1000)[0], 409)
+        self.assertEqual(board.command("home")[0], 202)
+        board.until("idle")
+        self.burning(board, path)
+        self.assertEqual(board.command("stop")[0], 202)
+        self.reaches(path, "aborted")
+        self.assertIn("home", board.until("alarm")["status"]["message"])
+        again = self.put_cut(board, sheets=[1])
+        self.assert_problem(self.ask("POST", again + "/start", consent), 409, "device-not-ready")
+        self.assertEqual(board.command("home")[0], 202)
+        board.until("idle")
+        self.burning(board, again)
+
+    def test_marlin_and_smoothieware_cut_a_sheet_each(self):
+        for kind in ("marlin", "smoothie"):
+            params = {**PARAMS, "output": {"dialect": kind}}
+            job = self.ready_job(self.post_job(params=params))
+            machine = Machine(self, kind, 0, kind=kind)
+            path = self.put_cut(machine, job, sheets=[1])
+            self.fire(path)
+            self.reaches(path, "done", seconds=60)
+            planned = self.planned_mm(1)
+            self.assertAlmostEqual(machine.burnt_in_all_mm(), planned, delta=planned * 0.001)
 
     def test_a_machine_jogs_and_frames_without_light(self):
         machine = Machine(self, "hand", 20)

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/device.h"
+#include "drivers/sim/faulty_machine.h"
 #include "drivers/sim/sim_host.h"
 #include "drivers/transport.h"
 
@@ -19,6 +20,8 @@ namespace {
 
 using std::chrono::milliseconds;
 using testing::HasSubstr;
+
+const SimHostOptions kFast{0.0, {}};
 
 struct Point {
     double x = 0.0;
@@ -46,9 +49,10 @@ std::string program_of(const std::vector<Point>& points) {
 }
 
 struct Bench {
-    explicit Bench(SimHostOptions options = {}) {
-        options.speed = 0.0;
-        host = std::make_unique<SimHost>(open_pty_link(), options);
+    explicit Bench(std::vector<Fault> faults = {}) {
+        host = std::make_unique<SimHost>(
+            open_pty_link(),
+            std::make_unique<FaultyMachine>(GrblMachineOptions(), std::move(faults)), kFast);
         device = open_device("grbl:" + host->address());
     }
 
@@ -85,9 +89,8 @@ TEST(GrblDevice, BurnsExactlyTheProgramThroughAPty) {
 }
 
 TEST(GrblDevice, BurnsExactlyTheProgramOverTcp) {
-    SimHostOptions options;
-    options.speed = 0.0;
-    const SimHost host(open_tcp_link(0), options);
+    const SimHost host(open_tcp_link(0), std::make_unique<FaultyMachine>(GrblMachineOptions()),
+                       kFast);
     const auto device = open_device("grbl:" + host.address());
     const std::vector<Point> points = spiral(100);
     device->start(program_of(points));
@@ -121,9 +124,7 @@ TEST(GrblDevice, WritesTheBeamLogOfItsOwnSimulatedMachine) {
 }
 
 TEST(GrblDevice, FindsAnUnpluggedMachineAtOnceAndStaysDisconnected) {
-    SimHostOptions options;
-    options.faults = parse_faults("unplug:50");
-    Bench bench(options);
+    Bench bench(parse_faults("unplug:50"));
     bench.device->start(program_of(spiral(400)));
     EXPECT_THROW(bench.run_to_end(), LinkLost);
     EXPECT_EQ(bench.device->progress().outcome, JobOutcome::LinkLost);
@@ -134,8 +135,7 @@ TEST(GrblDevice, FindsAnUnpluggedMachineAtOnceAndStaysDisconnected) {
 }
 
 TEST(GrblDevice, IsStoppedFromAnotherThreadWhileItsOwnerWorks) {
-    SimHostOptions options;
-    Bench bench(options);
+    Bench bench;
     bench.device->start(program_of(spiral(5000)));
     std::jthread stopper([&bench] {
         while (bench.device->progress().lines_acknowledged < 100) {

@@ -14,9 +14,11 @@
 
 #include "drivers/lihuiyu/address.h"
 #include "drivers/lihuiyu/ch341_transport.h"
+#include "drivers/lihuiyu/egv.h"
 #include "drivers/lihuiyu/session.h"
 #include "drivers/session_device.h"
-#include "drivers/sim/lihuiyu_host.h"
+#include "drivers/sim/lihuiyu_transport.h"
+#include "drivers/sim/sim_host.h"
 #include "drivers/transport.h"
 
 namespace leafcutter::drivers {
@@ -68,6 +70,11 @@ SimLihuiyuOptions fast(const std::string& more = {}) {
     return parse_simulated_lihuiyu("speed=0" + more);
 }
 
+std::unique_ptr<SimHost> hosted(std::unique_ptr<SimLink> link, const SimLihuiyuOptions& options) {
+    return std::make_unique<SimHost>(
+        std::move(link), std::make_unique<LihuiyuMachine>(options.machine), options.host);
+}
+
 TEST(LihuiyuDevice, BurnsAJobOnItsOwnSimulatedMachineAndKeepsTheBeamLog) {
     const auto path =
         std::filesystem::temp_directory_path() / fmt::format("leafcutter-lihuiyu-{}", getpid());
@@ -92,25 +99,24 @@ TEST(LihuiyuDevice, BurnsAJobOnItsOwnSimulatedMachineAndKeepsTheBeamLog) {
 
 TEST(LihuiyuDevice, BurnsAJobOverTcpAndOverAPty) {
     for (const bool tcp : {true, false}) {
-        LihuiyuHost host(tcp ? open_tcp_link(0) : open_pty_link(), fast());
-        const auto device = open_device("lihuiyu:" + host.address());
+        const auto host = hosted(tcp ? open_tcp_link(0) : open_pty_link(), fast());
+        const auto device = open_device("lihuiyu:" + host->address());
         ASSERT_TRUE(home(*device));
         device->start(squares(12));
         EXPECT_EQ(run_to_end(*device), JobOutcome::Done) << device->progress().reason;
-        EXPECT_NEAR(length_of(host.burnt()), 12 * 16.0, 12 * 4 * 0.0254);
-        EXPECT_THAT(host.take_violations(), IsEmpty());
-        EXPECT_FALSE(host.beam_on());
+        EXPECT_NEAR(length_of(host->burnt()), 12 * 16.0, 12 * 4 * 0.0254);
+        EXPECT_THAT(host->take_violations(), IsEmpty());
+        EXPECT_EQ(host->beam_power(), 0.0);
     }
 }
 
 TEST(LihuiyuDevice, FindsAnUnpluggedBoardAtOnceAndStaysDisconnected) {
     for (const char* address : {"usb", "tcp", "pty"}) {
-        std::unique_ptr<LihuiyuHost> host;
+        std::unique_ptr<SimHost> host;
         std::string uri = "sim:lihuiyu?speed=0&fault=unplug:20";
         if (address != std::string("usb")) {
-            host = std::make_unique<LihuiyuHost>(
-                address == std::string("tcp") ? open_tcp_link(0) : open_pty_link(),
-                fast("&fault=unplug:20"));
+            host = hosted(address == std::string("tcp") ? open_tcp_link(0) : open_pty_link(),
+                          fast("&fault=unplug:20"));
             uri = "lihuiyu:" + host->address();
         }
         const auto device = open_device(uri);
@@ -122,14 +128,14 @@ TEST(LihuiyuDevice, FindsAnUnpluggedBoardAtOnceAndStaysDisconnected) {
         EXPECT_NO_THROW(device->run_once(milliseconds(1)));
         EXPECT_THROW(device->start(squares(1)), Refused);
         // The board goes on with what it has, and no further.
-        const auto dark = [&host] { return !host || !host->beam_on(); };
+        const auto dark = [&host] { return !host || host->beam_power() == 0.0; };
         EXPECT_TRUE(turn_until(*device, dark)) << address;
     }
 }
 
 TEST(LihuiyuDevice, IsStoppedFromAnotherThreadWhileItsOwnerWorks) {
-    LihuiyuHost host(open_pty_link(), parse_simulated_lihuiyu("speed=20"));
-    const auto device = open_device("lihuiyu:" + host.address());
+    const auto host = hosted(open_pty_link(), parse_simulated_lihuiyu("speed=20"));
+    const auto device = open_device("lihuiyu:" + host->address());
     ASSERT_TRUE(home(*device));
     device->start(squares(400));
     std::jthread stopper([&device] {
@@ -141,50 +147,66 @@ TEST(LihuiyuDevice, IsStoppedFromAnotherThreadWhileItsOwnerWorks) {
     EXPECT_EQ(run_to_end(*device), JobOutcome::Aborted);
     stopper.join();
     ASSERT_TRUE(turn_until(*device, [&] { return device->status().state == MachineState::Alarm; }));
-    turn_until(*device, [&] { return !host.beam_on(); });
-    EXPECT_FALSE(host.beam_on());
-    EXPECT_LT(length_of(host.burnt()), 400 * 16.0);
+    turn_until(*device, [&] { return host->beam_power() == 0.0; });
+    EXPECT_EQ(host->beam_power(), 0.0);
+    EXPECT_LT(length_of(host->burnt()), 400 * 16.0);
     EXPECT_THROW(device->start(squares(1)), NotHomed);
 }
 
 TEST(LihuiyuDevice, TurnsTheBeamOffWhenClosedMidJob) {
-    LihuiyuHost host(open_pty_link(), parse_simulated_lihuiyu("speed=20"));
+    const auto host = hosted(open_pty_link(), parse_simulated_lihuiyu("speed=20"));
     {
-        const auto device = open_device("lihuiyu:" + host.address());
+        const auto device = open_device("lihuiyu:" + host->address());
         ASSERT_TRUE(home(*device));
         device->start(squares(400));
         ASSERT_TRUE(
             turn_until(*device, [&] { return device->progress().lines_acknowledged > 60; }));
     }
-    EXPECT_FALSE(host.beam_on());
-    const double burnt = length_of(host.burnt());
+    EXPECT_EQ(host->beam_power(), 0.0);
+    const double burnt = length_of(host->burnt());
     EXPECT_GT(burnt, 0.0);
     EXPECT_LT(burnt, 400 * 16.0);
     // Whoever opens it next must home it, and can go on from there.
-    const auto device = open_device("lihuiyu:" + host.address());
+    const auto device = open_device("lihuiyu:" + host->address());
     EXPECT_THROW(device->start(squares(1)), NotHomed);
     ASSERT_TRUE(home(*device));
     device->start(squares(1));
     EXPECT_EQ(run_to_end(*device), JobOutcome::Done) << device->progress().reason;
-    EXPECT_THAT(host.take_violations(), IsEmpty());
+    EXPECT_THAT(host->take_violations(), IsEmpty());
 }
 
 TEST(LihuiyuDevice, TakesAnEgvFile) {
     const auto path =
         std::filesystem::temp_directory_path() / fmt::format("leafcutter-egv-{}", getpid());
-    LihuiyuHost host(open_tcp_link(0), fast());
-    const auto device = open_device("lihuiyu:" + host.address());
+    const auto host = hosted(open_tcp_link(0), fast());
+    const auto device = open_device("lihuiyu:" + host->address());
     ASSERT_TRUE(home(*device));
     device->start(
         "Document type : LHYMICRO-GL file\nFile version: 1.0.01\nCopyright: Unknown\n"
         "Creator-Software: another\n\n%0%0%0%0%\nIBzzzvRzzzvS1P\n"
         "ICV1752231021000191NLBS1EDz139Rz139Tz139Lz139FNSE-\n");
     EXPECT_EQ(run_to_end(*device), JobOutcome::Done) << device->progress().reason;
-    const std::vector<BurntPiece> burnt = host.burnt();
+    const std::vector<BurntPiece> burnt = host->burnt();
     ASSERT_FALSE(burnt.empty());
     EXPECT_NEAR(length_of(burnt), 4 * 394 * 0.0254, 1e-6);
     EXPECT_NEAR(burnt.front().x0_mm, 787 * 0.0254, 1e-6);
     EXPECT_NEAR(burnt.front().y0_mm, 210.0 - 787 * 0.0254, 1e-6);
+}
+
+TEST(LihuiyuDevice, TakesTheEgvFileOfAProgramForTheProgram) {
+    const EncoderOptions options;
+    const std::string egv = convert_to_egv(squares(3), options);
+    const std::vector<CutMove> direct = read_program_moves(squares(3), options);
+    double lit = 0.0;
+    CutMove before;
+    for (const CutMove& move : read_program_moves(egv, options)) {
+        lit += move.beam ? std::hypot(move.x_mm - before.x_mm, move.y_mm - before.y_mm) : 0.0;
+        before = move;
+    }
+    EXPECT_NEAR(lit, 3 * 16.0, 12 * 0.0254);
+    EXPECT_NEAR(before.x_mm, direct.back().x_mm, 0.0254);
+    EXPECT_NEAR(before.y_mm, direct.back().y_mm, 0.0254);
+    EXPECT_THROW(convert_to_egv("M4\nG1 X1000 Y0 S5 F600\n", options), ProgramRefused);
 }
 
 // A USB device that takes transfers as it is told to.
@@ -215,6 +237,7 @@ public:
     std::string bulk_read(std::size_t /*most*/, milliseconds /*timeout*/) override {
         return std::string("\xFF\xCE\x6F\x08\x13\0", 6);
     }
+    void rest(milliseconds /*time*/) override {}
     std::string description() const override { return "scripted"; }
 
 private:
@@ -251,7 +274,8 @@ TEST(Ch341Transport, GivesUpATornPacket) {
 
 TEST(UsbPipe, SaysThatNoBoardIsThere) {
     try {
-        open_usb_pipe({.vendor = 0x1A86, .product = 0x5512, .bus = 254, .address = 254});
+        open_usb_pipe(
+            {.vendor = 0x1A86, .product = 0x5512, .bus = 254, .address = 254, .port = {}});
         FAIL() << "there is none at bus 254";
     } catch (const LinkLost& lost) {
         EXPECT_THAT(lost.what(), HasSubstr("usb 1a86:5512 bus 254 address 254"));
