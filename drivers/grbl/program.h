@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drivers/device.h"
+#include "drivers/grbl/protocol.h"
 
 namespace leafcutter::drivers {
 
@@ -25,9 +26,9 @@ struct Program {
     std::vector<ProgramLine> lines;
 };
 
-// Throws ProgramRefused, naming the line, for a line that Grbl can't take: longer than 79
-// characters, words that can't be read, `$` commands, bytes that Grbl takes for real-time commands.
-Program read_program(std::string_view text);
+// Throws ProgramRefused, naming the line, for a line that Grbl can't take: longer than its line
+// buffer, words that can't be read, `$` commands, bytes that Grbl takes for real-time commands.
+Program read_program(std::string_view text, std::size_t longest_line = GrblProtocol::kMaxLine);
 
 // What a program is held against. Lengths in mm.
 struct MachineFacts {

@@ -93,7 +93,7 @@ void GrblSession::start(std::string_view text) {
         throw Refused(fmt::format("start: the machine is busy ({}); it must be idle",
                                   to_string(status_.state)));
     }
-    const Program program = read_program(text);
+    const Program program = read_program(text, protocol_.longest_line());
     preflight(program, facts());
     progress_ = {JobOutcome::Running, program.lines.size(), 0, 0, {}};
     status_.message.clear();
@@ -191,9 +191,10 @@ void GrblSession::console(std::string_view line) {
     } else {
         require_ready("console");
         if (std::any_of(line.begin(), line.end(), is_realtime_byte) ||
-            line.find('\n') != line.npos || line.size() > GrblProtocol::kMaxLine) {
-            throw Refused(
-                "console: one line of at most 79 characters, without ? ! ~ and non-ASCII bytes");
+            line.find('\n') != line.npos || line.size() > protocol_.longest_line()) {
+            throw Refused(fmt::format(
+                "console: one line of at most {} characters, without ? ! ~ and non-ASCII bytes",
+                protocol_.longest_line()));
         }
         submit(std::string(line));
     }
@@ -224,6 +225,7 @@ bool GrblSession::send_line(const Pending& line) {
     }
     output_ += *bytes;
     pending_.push_back(line);
+    line_sent_ = now_;
     standing_since_.reset();
     progress_.lines_sent += line.origin == Origin::Job ? 1 : 0;
     return true;
@@ -302,6 +304,8 @@ void GrblSession::begin_reset() {
 void GrblSession::forget_lines() {
     protocol_.forget_lines();
     pending_.clear();
+    garbled_oks_ = 0;
+    short_reports_ = 0;
     standing_since_.reset();
 }
 
@@ -325,7 +329,7 @@ MachineFacts GrblSession::facts() const {
     if (settings_value(20, 0.0) != 0.0 && work_offset_) {
         std::array<double, 2> origin{};
         const int homes_low = static_cast<int>(settings_value(23, 0.0));
-        const bool forced = build_options_.find('Z') != std::string::npos;
+        const bool forced = firmware_.build_options().find('Z') != std::string::npos;
         for (std::size_t axis = 0; axis < 2; ++axis) {
             const bool positive = forced && (homes_low & (1 << axis)) != 0;
             origin[axis] = (*work_offset_)[axis] + (positive ? 0.0 : facts.travel_mm[axis]);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "drivers/device.h"
+#include "drivers/grbl/firmware.h"
 #include "drivers/grbl/program.h"
 #include "drivers/grbl/protocol.h"
 #include "drivers/grbl/status_report.h"
@@ -32,11 +33,16 @@ public:
     std::string take_output() override;
     std::vector<std::string> take_lines() override;
 
+    GrblFirmware firmware() const { return firmware_.kind(); }
+
     // Attached, settings known, no halt under way.
     bool ready() const { return phase_ == Phase::Ready && halt_ == Halt::None; }
-    bool attached() const override { return ready() && status_.state != MachineState::Unknown; }
+    bool attached() const override { return ready() && reported_; }
 
     std::size_t bytes_in_flight() const { return protocol_.bytes_in_flight(); }
+
+    // Answers that noise on the link had swallowed or doubled, put right without a stop.
+    std::size_t answers_healed() const { return answers_healed_; }
 
     bool may_close() const override;
 
@@ -69,6 +75,9 @@ private:
         double dwell_s = 0.0;
     };
 
+    // It reads a line only when it has done with the one before, so that what it has received and
+    // not read can be held against what it was sent.
+    bool reads_line_by_line() const { return firmware_.kind() == GrblFirmware::Grbl; }
     bool job_runs() const { return progress_.outcome == JobOutcome::Running; }
     double settings_value(int number, double otherwise) const;
     MachineFacts facts() const;
@@ -95,7 +104,12 @@ private:
     void attach_by(const StatusReport& report);
     void halt_by(const StatusReport& report);
 
-    // Watching.
+    void handle_garbled(const GrblEvent& event);
+    void resolve_oldest();
+
+    // Watching: session_watch.cpp
+    void watch_buffer(const StatusReport& report);
+    void heal_or_fail(const std::string& what);
     void watch_silence() const;
     void watch_attach();
     void watch_halt();
@@ -119,7 +133,13 @@ private:
     int unanswered_polls_ = 0;
     std::optional<Time> standing_since_;     // Idle with lines unanswered.
     std::optional<Time> beam_stands_since_;  // Idle or Hold:0 with S > 0 in FS.
+    Time line_sent_;                         // When the last line was sent.
+    int short_reports_ = 0;                  // In a row, that show fewer bytes than are unanswered.
+    std::size_t garbled_oks_ = 0;            // Each stands for an answer that was not counted.
+    std::size_t answers_healed_ = 0;
+    std::size_t rx_capacity_ = 0;  // As its reports show it when empty.
     bool resume_wanted_ = false;
+    bool reported_ = false;  // Since it became ready.
     bool critical_alarm_ = false;
 
     GrblProtocol protocol_;
@@ -136,7 +156,7 @@ private:
     JobProgress progress_;
     std::optional<int> sub_state_;
     std::map<int, double> settings_;
-    std::string build_options_;
+    FirmwareSigns firmware_;
     std::optional<std::array<double, 3>> work_offset_;
 };
 

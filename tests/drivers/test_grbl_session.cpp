@@ -239,7 +239,6 @@ INSTANTIATE_TEST_SUITE_P(Faults,
                          testing::Values(FaultCase{"drop-ok:4", "unanswered"},
                                          FaultCase{"drop-ok:20", "unanswered"},
                                          FaultCase{"drop-ok:40", "unanswered"},
-                                         FaultCase{"corrupt-ok:10", "unanswered"},
                                          FaultCase{"alarm:12", "hard limit"},
                                          FaultCase{"reset:12", "restarted"}),
                          [](const auto& fault) {
@@ -249,6 +248,96 @@ INSTANTIATE_TEST_SUITE_P(Faults,
                                  [](char c) { return c == '-' || c == ':'; }, '_');
                              return name;
                          });
+
+// What becomes of the `count`-th "ok" of the job on its way to the sender.
+std::function<void(std::string&)> noise_at(int count, const std::string& instead) {
+    return [left = count, instead](std::string& answer) mutable {
+        for (std::size_t at = 0; left > 0 && (at = answer.find("ok\r\n", at)) != answer.npos;
+             at += 4) {
+            if (--left == 0) {
+                answer.replace(at, 4, instead);
+                return;
+            }
+        }
+    };
+}
+
+class GrblSessionNoise : public testing::TestWithParam<bool> {};
+
+// With and without Bf in the reports ($10).
+TEST_P(GrblSessionNoise, HealsAnOkWithAFlippedBitAndBurnsEverythingOnce) {
+    for (const int at : {1, 4, 5, 12, 20, 35}) {
+        for (const char* garbled : {"\x7fk\r\n", "oc\r\n", "k\r\n", "o\r\n"}) {
+            SteppedMachine bench;
+            bench.machine().settings().set(10, GetParam() ? 3 : 1);
+            ASSERT_TRUE(bench.attach());
+            bench.noise = noise_at(at, garbled);
+            bench.session().start(zigzag(30));
+            ASSERT_TRUE(bench.finish_job());
+            EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done)
+                << at << garbled << bench.session().progress().reason;
+            EXPECT_EQ(bench.session().progress().lines_acknowledged, 37U);
+            EXPECT_EQ(bench.session().answers_healed(), 1U) << at << garbled;
+            EXPECT_NEAR(burnt_mm(bench.machine()), zigzag_mm(30), 0.05);
+            EXPECT_EQ(bench.machine().bytes_dropped(), 0U);
+        }
+    }
+}
+
+TEST_P(GrblSessionNoise, NeverOverfillsTheBufferAfterADoubledOk) {
+    for (const int at : {1, 2, 6, 12, 30}) {
+        GrblMachineOptions options;
+        options.line_time_s = 0.002;
+        SteppedMachine bench(options);
+        bench.machine().settings().set(10, GetParam() ? 3 : 1);
+        ASSERT_TRUE(bench.attach());
+        bench.noise = noise_at(at, "ok\r\nok\r\n");
+        bench.session().start(zigzag(30));
+        ASSERT_TRUE(bench.finish_job());
+        EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done)
+            << bench.session().progress().reason;
+        EXPECT_EQ(bench.machine().bytes_dropped(), 0U) << at;
+        EXPECT_NEAR(burnt_mm(bench.machine()), zigzag_mm(30), 0.05);
+        EXPECT_NEAR(bench.machine().position_mm()[0], 0.0, 1e-9);
+    }
+}
+
+TEST_P(GrblSessionNoise, StopsAtOnceAtWhatMayHaveBeenAnError) {
+    SteppedMachine bench;
+    bench.machine().settings().set(10, GetParam() ? 3 : 1);
+    ASSERT_TRUE(bench.attach());
+    bench.noise = noise_at(12, "errkr:2\r\n");
+    bench.session().start(zigzag(30));
+    ASSERT_TRUE(bench.finish_job());
+    EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Failed);
+    EXPECT_THAT(bench.session().progress().reason, HasSubstr("garbled"));
+    ASSERT_TRUE(bench.run_until([&] { return bench.session().ready(); }, 5.0));
+    EXPECT_EQ(bench.machine().state(), GrblMachine::State::Idle);  // The position is kept.
+    EXPECT_EQ(bench.machine().beam_power(), 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Reports, GrblSessionNoise, testing::Bool());
+
+TEST(GrblSession, NoticesALostOkWhileTheMachineStillRuns) {
+    SteppedMachine bench;
+    bench.machine().settings().set(10, 3);
+    ASSERT_TRUE(bench.attach());
+    bool lost = false;
+    double lost_at = 0.0;
+    bench.noise = [&](std::string& answer) {
+        if (!lost && bench.session().progress().lines_acknowledged > 20 && answer == "ok\r\n") {
+            answer.clear();
+            lost = true;
+            lost_at = bench.now_s();
+        }
+    };
+    bench.session().start(zigzag(60));
+    ASSERT_TRUE(bench.finish_job());
+    EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Failed);
+    EXPECT_THAT(bench.session().progress().reason, HasSubstr("unanswered"));
+    EXPECT_LT(bench.now_s() - lost_at, 2.0);
+    EXPECT_LT(burnt_mm(bench.machine()), zigzag_mm(60) - 90.0);
+}
 
 TEST(GrblSession, GivesUpAControllerThatFallsSilent) {
     SteppedMachine bench({}, parse_faults("stall:12"));
