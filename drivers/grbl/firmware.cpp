@@ -77,7 +77,9 @@ std::size_t FirmwareSigns::receive_budget() const {
     constexpr std::size_t kSafe = GrblProtocol::kSafeRxBytes;
     // One byte of a ring is never used, and grblHAL states the whole ring.
     const std::size_t unused = kind_ == GrblFirmware::GrblHal ? 2 : 1;
-    return stated_rx_ > kSafe + unused ? stated_rx_ - unused : kSafe;
+    constexpr std::size_t kMostBelieved = 65536;
+    const bool believed = stated_rx_ > kSafe + unused && stated_rx_ <= kMostBelieved;
+    return believed ? stated_rx_ - unused : kSafe;
 }
 
 std::size_t FirmwareSigns::longest_line() const {

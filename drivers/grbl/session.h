@@ -6,6 +6,7 @@
 
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <deque>
@@ -26,7 +27,8 @@ namespace leafcutter::drivers {
 
 class GrblSession final : public Session {
 public:
-    explicit GrblSession(Time now);
+    // Programs of a higher S than this part of $30 are refused.
+    explicit GrblSession(Time now, double power_cap_percent = 100.0);
 
     void receive(std::string_view bytes, Time now) override;
     void tick(Time now) override;
@@ -56,6 +58,10 @@ public:
     void jog(const Jog& jog) override;
     void jog_cancel() override;
     void console(std::string_view line) override;
+    void set_overrides(const std::array<int, 3>& percent) override;
+
+    // $ settings, as the controller listed them or accepted them since.
+    const std::map<int, double>& settings() const { return settings_; }
     void lose_link(const std::string& reason) override;
     std::string_view last_words() const override { return "\x18"; }
 
@@ -104,6 +110,7 @@ private:
     void attach_by(const StatusReport& report);
     void halt_by(const StatusReport& report);
 
+    void step_overrides();
     void handle_garbled(const GrblEvent& event);
     void resolve_oldest();
 
@@ -154,6 +161,9 @@ private:
 
     DeviceStatus status_;
     JobProgress progress_;
+    double power_cap_percent_;
+    std::optional<std::array<int, 3>> wanted_overrides_;
+    Time overrides_stepped_;
     std::optional<int> sub_state_;
     std::map<int, double> settings_;
     FirmwareSigns firmware_;

@@ -136,6 +136,8 @@ void GrblSession::handle_banner(const GrblEvent& event) {
     status_.firmware = firmware_.name();
     critical_alarm_ = false;
     resume_wanted_ = false;
+    wanted_overrides_.reset();
+    status_.override_percent = {100, 100, 100};
     forget_lines();
     const bool expected = halt_ != Halt::None || phase_ != Phase::Ready;
     halt_ = Halt::None;
@@ -191,6 +193,10 @@ void GrblSession::handle_status(const StatusReport& report) {
     status_.power_s = report.power_s.value_or(status_.power_s);
     status_.override_percent = report.override_percent.value_or(status_.override_percent);
     take_positions(report);
+    constexpr milliseconds kOverrideWait{700};  // A report of it follows at once, or it was lost.
+    if (report.override_percent || now_ - overrides_stepped_ > kOverrideWait) {
+        step_overrides();
+    }
     if (phase_ == Phase::Greeting) {
         attach_by(report);
         return;

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -193,6 +194,23 @@ TEST(GrblSession, HoldsAndResumesAndBurnsAllOfIt) {
     EXPECT_NEAR(burnt_mm(bench.machine()), zigzag_mm(10), 0.05);
 }
 
+TEST(GrblSession, BringsOverridesWhereTheyAreWantedStepByStep) {
+    SteppedMachine bench;
+    ASSERT_TRUE(bench.attach());
+    bench.session().start(zigzag(40));
+    ASSERT_TRUE(bench.run_until([&] { return burnt_mm(bench.machine()) > 100.0; }));
+    for (const std::array<int, 3>& wanted :
+         {std::array<int, 3>{137, 50, 63}, std::array<int, 3>{10, 25, 200},
+          std::array<int, 3>{100, 100, 100}}) {
+        bench.session().set_overrides(wanted);
+        EXPECT_TRUE(bench.run_until(
+            [&] { return bench.session().status().override_percent == wanted; }, 6.0));
+    }
+    bench.session().set_overrides({151, 100, 80});
+    ASSERT_TRUE(bench.finish_job());
+    EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done);
+}
+
 TEST(GrblSession, StaysHeldUntilResumed) {
     SteppedMachine bench;
     ASSERT_TRUE(bench.attach());
@@ -386,6 +404,39 @@ TEST(GrblSession, SendsEepromLinesAlone) {
     EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done);
     EXPECT_NEAR(bench.machine().position_mm()[0], 26.0, 1e-9);
     (void)seen;
+}
+
+TEST(GrblSession, ReadsSettingsAndKeepsUpWithThoseEditedByHand) {
+    SteppedMachine bench;
+    ASSERT_TRUE(bench.attach());
+    EXPECT_EQ(bench.session().settings().at(30), 1000.0);
+    bench.session().console("$30=500");
+    ASSERT_TRUE(bench.run_until([&] { return bench.session().may_close(); }, 3.0));
+    EXPECT_EQ(bench.session().settings().at(30), 500.0);
+    EXPECT_EQ(bench.machine().settings().get(30), 500.0);
+    EXPECT_THROW(bench.session().start("G21\nM4 S600\nG1 X5 F500\nM5\n"), Refused);
+}
+
+// A key held down: a jog every 40 ms, and the head stands soon after it is let go.
+TEST(GrblSession, JogsWhileAKeyIsHeldAndStopsWhenItIsLetGo) {
+    SteppedMachine bench;
+    ASSERT_TRUE(bench.attach());
+    for (int i = 0; i < 50; ++i) {
+        bench.session().jog({2.0, 0.0, 3000.0});
+        for (int turn = 0; turn < 8; ++turn) {
+            bench.step();
+        }
+    }
+    const double let_go_s = bench.now_s();
+    const double let_go_mm = bench.machine().position_mm()[0];
+    EXPECT_GT(let_go_mm, 60.0);
+    bench.session().jog_cancel();
+    ASSERT_TRUE(
+        bench.run_until([&] { return bench.session().status().state == MachineState::Idle; }, 2.0));
+    EXPECT_LT(bench.now_s() - let_go_s, 0.6);
+    EXPECT_LT(bench.machine().position_mm()[0] - let_go_mm, 10.0);
+    bench.run_until([] { return false; }, 1.0);
+    EXPECT_LT(bench.machine().position_mm()[0] - let_go_mm, 10.0);  // Nothing comes after.
 }
 
 TEST(GrblSession, RefusesWhatTheMachinesStateForbids) {
