@@ -39,9 +39,14 @@ void GrblSession::receive(std::string_view bytes, Time now) {
         heard_ = now;
         unanswered_polls_ = 0;
     }
-    for (const GrblEvent& event : protocol_.receive(bytes)) {
-        lines_.push_back(event.text);
-        handle(event);
+    // Line by line: what a report says is held against the count of its own moment.
+    while (!bytes.empty()) {
+        const std::size_t end = std::min(bytes.find('\n'), bytes.size() - 1) + 1;
+        for (const GrblEvent& event : protocol_.receive(bytes.substr(0, end))) {
+            lines_.push_back(event.text);
+            handle(event);
+        }
+        bytes.remove_prefix(end);
     }
 }
 

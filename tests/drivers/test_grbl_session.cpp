@@ -336,6 +336,33 @@ TEST_P(GrblSessionNoise, StopsAtOnceAtWhatMayHaveBeenAnError) {
 
 INSTANTIATE_TEST_SUITE_P(Reports, GrblSessionNoise, testing::Bool());
 
+// Answers that come in lumps, reports among them, must not be taken for lost or doubled ones.
+TEST(GrblSession, TakesLumpsOfAnswersForNoFault) {
+    GrblMachineOptions options;
+    options.line_time_s = 0.004;
+    SteppedMachine bench(options);
+    bench.machine().settings().set(10, 3);
+    ASSERT_TRUE(bench.attach());
+    std::string kept;
+    int turn = 0;
+    bench.noise = [&](std::string& answer) {
+        kept += answer;
+        answer.clear();
+        if (++turn % 7 == 0) {
+            answer.swap(kept);
+        }
+    };
+    std::string text = "G21\nG90\nM4 S0\nG1 F6000\n";
+    for (int i = 0; i < 600; ++i) {
+        text += fmt::format("G1X{:.1f}Y{}S200\n", 10.0 + 0.5 * (i % 100), i / 100);
+    }
+    bench.session().start(text + "M5 S0\nG0 X0 Y0\n");
+    ASSERT_TRUE(bench.finish_job());
+    EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done)
+        << bench.session().progress().reason;
+    EXPECT_EQ(bench.session().answers_healed(), 0U);
+}
+
 TEST(GrblSession, NoticesALostOkWhileTheMachineStillRuns) {
     SteppedMachine bench;
     bench.machine().settings().set(10, 3);
