@@ -77,6 +77,7 @@ void simulate_grbl(const SimulateOptions& options) {
     host_options.burn_path = options.burn_path;
     host_options.speed = options.speed.value_or(host_options.speed);
     drivers::GrblMachineOptions& machine = host_options.machine;
+    machine.eeprom_time_s = 0.02;  // As an ATmega takes for a setting.
     machine.bed_width_mm = options.width_mm.value_or(machine.bed_width_mm);
     machine.bed_height_mm = options.height_mm.value_or(machine.bed_height_mm);
     host_options.faults = faults_of(options);

@@ -466,6 +466,20 @@ TEST(GrblSession, JogsWhileAKeyIsHeldAndStopsWhenItIsLetGo) {
     EXPECT_LT(bench.machine().position_mm()[0] - let_go_mm, 10.0);  // Nothing comes after.
 }
 
+// While it writes its EEPROM the controller hears nothing: no line may be under way then.
+TEST(GrblSession, LosesNoByteToAControllerThatWritesItsEeprom) {
+    GrblMachineOptions options;
+    options.eeprom_time_s = 0.04;
+    SteppedMachine bench(options);
+    ASSERT_TRUE(bench.attach());
+    bench.session().start(
+        "G21\nG0 X10\nG10 L20 P1 X0 Y0\nG0 X5\nG10 L2 P2 X3\nG28.1\nG0 X6\nG0 X0\n");
+    ASSERT_TRUE(bench.finish_job());
+    EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done)
+        << bench.session().progress().reason;
+    EXPECT_NEAR(bench.machine().position_mm()[0], 10.0, 1e-9);
+}
+
 TEST(GrblSession, RefusesWhatTheMachinesStateForbids) {
     SteppedMachine bench;
     EXPECT_THROW(bench.session().start("G0 X1\n"), Refused);  // Not attached yet.
