@@ -1,7 +1,10 @@
 #include "drivers/device.h"
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
+
+#include <fmt/format.h>
 
 #include "drivers/grbl/session.h"
 #include "drivers/lihuiyu/address.h"
@@ -40,6 +43,10 @@ std::string_view to_string(MachineState state) {
     return "unknown";
 }
 
+void Device::set_overrides(const std::array<int, 3>& /*percent*/) {
+    throw Refused("overrides: this machine has none");
+}
+
 namespace {
 
 bool starts_with(std::string_view text, std::string_view start) {
@@ -64,8 +71,42 @@ std::optional<std::string_view> query_of(std::string_view uri, std::string_view 
     return rest.substr(std::min<std::size_t>(rest.size(), 1));
 }
 
-std::unique_ptr<Session> grbl_session(Session::Time now) {
-    return std::make_unique<GrblSession>(now);
+// "power_cap=PERCENT" is taken out of the query; what is left goes to the transport.
+struct GrblAddress {
+    std::string transport;
+    double power_cap_percent = 100.0;
+};
+
+GrblAddress split_grbl_address(std::string_view address) {
+    constexpr std::string_view kKey = "power_cap=";
+    const std::size_t question = std::min(address.find('?'), address.size());
+    GrblAddress result;
+    std::string query;
+    for (std::size_t at = question + 1; at < address.size();) {
+        const std::size_t end = std::min(address.find('&', at), address.size());
+        const std::string_view pair = address.substr(at, end - at);
+        at = end + 1;
+        if (!starts_with(pair, kKey)) {
+            query += fmt::format("{}{}", query.empty() ? "?" : "&", pair);
+            continue;
+        }
+        const std::string_view value = pair.substr(kKey.size());
+        const char* const last = value.data() + value.size();
+        const auto [stop, fault] = std::from_chars(value.data(), last, result.power_cap_percent);
+        const bool fits = result.power_cap_percent > 0.0 && result.power_cap_percent <= 100.0;
+        if (fault != std::errc{} || stop != last || !fits) {
+            throw std::invalid_argument(
+                fmt::format("device \"{}\": power_cap must be a percentage above 0", address));
+        }
+    }
+    result.transport = std::string(address.substr(0, question)) + query;
+    return result;
+}
+
+SessionDevice::MakeSession grbl_session(double power_cap_percent) {
+    return [power_cap_percent](Session::Time now) -> std::unique_ptr<Session> {
+        return std::make_unique<GrblSession>(now, power_cap_percent);
+    };
 }
 
 std::unique_ptr<Session> marlin_session(Session::Time now) {
@@ -91,10 +132,16 @@ bool is_device_uri(std::string_view uri) {
 std::unique_ptr<Device> open_device(std::string_view uri) {
     constexpr std::string_view kGrbl = "grbl:";
     if (starts_with(uri, kGrbl)) {
-        return attached(uri, open_transport(uri.substr(kGrbl.size())), grbl_session);
+        const GrblAddress address = split_grbl_address(uri.substr(kGrbl.size()));
+        return attached(uri, open_transport(address.transport),
+                        grbl_session(address.power_cap_percent));
     }
     if (const auto query = query_of(uri, "sim:grbl")) {
-        return attached(uri, open_simulated_grbl(*query), grbl_session);
+        const GrblAddress address = split_grbl_address(fmt::format("?{}", *query));
+        const std::string_view rest =
+            std::string_view(address.transport)
+                .substr(std::min<std::size_t>(1, address.transport.size()));
+        return attached(uri, open_simulated_grbl(rest), grbl_session(address.power_cap_percent));
     }
     if (const auto query = query_of(uri, "sim:marlin")) {
         return attached(uri, open_simulated_marlin(*query), marlin_session);

@@ -112,6 +112,11 @@ public:
     virtual void jog_cancel() = 0;
     virtual void console(std::string line) = 0;  // One line by hand; the reply comes to on_line.
 
+    // Feed, rapid and power in percent while a program runs, as near as the controller's steps
+    // allow; DeviceStatus::override_percent shows how far it has got. Throws Refused where the
+    // controller has none.
+    virtual void set_overrides(const std::array<int, 3>& percent);
+
     // Every line received, for a console view. Set before the first run_once(); called by its
     // thread.
     std::function<void(std::string_view line)> on_line;
@@ -127,7 +132,8 @@ public:
 // Opens the device of a URI: grbl:/dev/ttyUSB0?baud=115200, grbl:tcp://host:port, marlin: and
 // smoothie: alike, lihuiyu:usb?bus=1&address=4 (lihuiyu/address.h), sim:grbl, sim:marlin,
 // sim:smoothie, sim:lihuiyu. The sim: ones start a simulated machine of their own; `?burn=FILE`
-// keeps its beam log. Throws LinkLost, or std::invalid_argument for a URI it can't read.
+// keeps its beam log. With "power_cap=PERCENT" a Grbl device refuses programs of a higher S than
+// that part of $30. Throws LinkLost, or std::invalid_argument for a URI it can't read.
 std::unique_ptr<Device> open_device(std::string_view uri);
 
 // Whether a URI begins like one that open_device() takes; opens nothing.

@@ -9,6 +9,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "drivers/file_descriptor.h"
 
 namespace leafcutter::drivers {
@@ -96,6 +99,19 @@ std::string access_trouble(const std::string& path) {
     return diagnose_open_failure(path, errno);
 }
 
+std::string held_trouble(const std::string& path, const std::string& proc) {
+    const std::vector<std::string> holders = holders_of(path, proc);
+    return holders.empty()
+               ? std::string{}
+               : fmt::format("{} has it open; close that one first", fmt::join(holders, " and "));
+}
+
+// A name in /proc that is a number is a process.
+bool is_process(const fs::path& entry) {
+    const std::string name = entry.filename().string();
+    return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+}
+
 // A CH341 adapter on the bus whose serial port is missing: brltty takes these for braille displays.
 bool lost_its_port(const fs::path& usb) {
     for (const fs::path& part : entries(usb)) {
@@ -145,6 +161,9 @@ std::vector<FoundPort> find_ports(const DiscoveryRoots& roots) {
             describe(*usb, port);
         }
         port.trouble = access_trouble(port.path);
+        if (port.trouble.empty()) {
+            port.trouble = held_trouble(port.path, roots.proc);
+        }
         found.push_back(port);
     }
     for (const fs::path& entry : entries(fs::path(roots.sys) / "bus" / "usb" / "devices")) {
@@ -158,12 +177,36 @@ std::vector<FoundPort> find_ports(const DiscoveryRoots& roots) {
     return found;
 }
 
+std::vector<std::string> holders_of(const std::string& path, const std::string& proc) {
+    std::error_code none;
+    const fs::path wanted = fs::weakly_canonical(path, none);
+    const std::string own = std::to_string(getpid());
+    std::vector<std::string> holders;
+    for (const fs::path& process : entries(proc)) {
+        const std::string number = process.filename().string();
+        if (!is_process(process) || number == own) {
+            continue;
+        }
+        for (const fs::path& open_file : entries(process / "fd")) {
+            if (fs::read_symlink(open_file, none) == wanted) {
+                holders.push_back(
+                    fmt::format("{} (process {})", read_line(process / "comm"), number));
+                break;
+            }
+        }
+    }
+    return holders;
+}
+
 std::string diagnose_open_failure(const std::string& path, int error_number) {
     switch (error_number) {
         case EACCES:
             return "permission denied; add yourself to its group (`sudo usermod -aG " +
                    group_of(path) + " $USER`), then log in again";
         case EBUSY:
+            if (const std::string held = held_trouble(path, "/proc"); !held.empty()) {
+                return held;
+            }
             return "another program has it open; close that one first";
         case ENOENT:
             return "there is no such port; plug the machine in and see `leafcutter devices`";

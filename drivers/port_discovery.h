@@ -22,7 +22,11 @@ struct FoundPort {
 struct DiscoveryRoots {
     std::string sys = "/sys";
     std::string dev = "/dev";
+    std::string proc = "/proc";
 };
+
+// The programs that hold `path` open, as "cncjs (process 4711)", as far as this user may see them.
+std::vector<std::string> holders_of(const std::string& path, const std::string& proc = "/proc");
 
 std::vector<FoundPort> find_ports(const DiscoveryRoots& roots = {});
 

@@ -81,7 +81,7 @@ std::unique_ptr<Transport> open_serial_port(const std::string& path, unsigned ba
         throw LinkLost(path + ": " + diagnose_open_failure(path, errno));
     }
     if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) {
-        throw LinkLost(path + ": another program has locked it; close that one first");
+        throw LinkLost(path + ": " + diagnose_open_failure(path, EBUSY));
     }
     const bool exclusive = !is_pty(path) && ioctl(file.get(), TIOCEXCL) == 0;
     set_raw(file, path, baud);

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <limits>
@@ -48,6 +49,9 @@ public:
     virtual void jog(const Jog& jog) = 0;
     virtual void jog_cancel() = 0;
     virtual void console(std::string_view line) = 0;
+    virtual void set_overrides(const std::array<int, 3>& /*percent*/) {
+        throw Refused("overrides: this machine has none");
+    }
 
     // The link is gone: a running job ends as LinkLost.
     virtual void lose_link(const std::string& reason) = 0;

@@ -130,6 +130,11 @@ void SessionDevice::console(std::string line) {
     session_->console(line);
 }
 
+void SessionDevice::set_overrides(const std::array<int, 3>& percent) {
+    const std::lock_guard lock(mutex_);
+    session_->set_overrides(percent);
+}
+
 void SessionDevice::write_output() {
     std::string output;
     {

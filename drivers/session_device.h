@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -46,6 +47,7 @@ public:
     void jog(const Jog& jog) override;
     void jog_cancel() override;
     void console(std::string line) override;
+    void set_overrides(const std::array<int, 3>& percent) override;
     void run_once(std::chrono::milliseconds slice) override;
 
 private:

@@ -15,6 +15,10 @@ namespace leafcutter::drivers {
 namespace {
 
 constexpr int kConnectTimeoutMs = 5000;
+// A peer that is switched off is gone after about 5 s, whether we write to it or not.
+constexpr int kKeepAliveSeconds = 2;
+constexpr int kKeepAliveTries = 3;
+constexpr int kUnansweredMs = 5000;
 
 class TcpSocket final : public Transport {
 public:
@@ -78,6 +82,10 @@ std::unique_ptr<Transport> open_tcp_socket(const std::string& host, const std::s
             // A single real-time byte must not wait for company; a dead peer is to be noticed.
             set_option(file, IPPROTO_TCP, TCP_NODELAY, 1);
             set_option(file, SOL_SOCKET, SO_KEEPALIVE, 1);
+            set_option(file, IPPROTO_TCP, TCP_KEEPIDLE, kKeepAliveSeconds);
+            set_option(file, IPPROTO_TCP, TCP_KEEPINTVL, 1);
+            set_option(file, IPPROTO_TCP, TCP_KEEPCNT, kKeepAliveTries);
+            set_option(file, IPPROTO_TCP, TCP_USER_TIMEOUT, kUnansweredMs);
             return std::make_unique<TcpSocket>(std::move(file), name);
         }
     }

@@ -103,7 +103,12 @@ private:
         if (number != code || !holds(kAllowedM, number)) {
             refuse(fmt::format("M{} is not allowed on a laser", code));
         }
-        if (number == 3 || number == 4) {
+        if (number == 3) {
+            refuse(
+                "M3 keeps the beam lit where the machine stands, should this computer fail; "
+                "write M4");
+        }
+        if (number == 4) {
             beam_ = true;
         } else if (number == 5 || number == 2 || number == 30) {
             beam_ = false;
@@ -136,6 +141,11 @@ private:
                 if (machine_.s_max && word.value > *machine_.s_max) {
                     refuse(fmt::format("S{} is above the machine's full power $30={}", word.value,
                                        *machine_.s_max));
+                }
+                if (machine_.s_max &&
+                    word.value > *machine_.s_max * machine_.power_cap_percent / 100.0) {
+                    refuse(fmt::format("S{} is above {} % of $30={}, the device's power_cap",
+                                       word.value, machine_.power_cap_percent, *machine_.s_max));
                 }
                 return false;
             case 'K':

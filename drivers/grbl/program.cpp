@@ -23,7 +23,7 @@ bool touches_eeprom(const GcodeWord& word) {
            (code >= 54.0 && code <= 59.0);
 }
 
-ProgramLine read_line(std::string stripped, std::size_t number) {
+ProgramLine read_line(std::string stripped, std::size_t number, std::size_t longest) {
     ProgramLine line{std::move(stripped), number};
     if (std::any_of(line.text.begin(), line.text.end(), is_realtime_byte)) {
         refuse(number, "holds a byte that Grbl takes for a real-time command (? ! ~, or no ASCII)");
@@ -31,9 +31,9 @@ ProgramLine read_line(std::string stripped, std::size_t number) {
     if (line.text[0] == '$') {
         refuse(number, "$ commands don't belong into a program; use the console");
     }
-    if (line.text.size() > GrblProtocol::kMaxLine) {
-        refuse(number, fmt::format("is {} characters long, Grbl takes {}", line.text.size(),
-                                   GrblProtocol::kMaxLine));
+    if (line.text.size() > longest) {
+        refuse(number,
+               fmt::format("is {} characters long, Grbl takes {}", line.text.size(), longest));
     }
     const GcodeWords words = split_words(line.text);
     if (words.fault) {
@@ -52,7 +52,7 @@ ProgramLine read_line(std::string stripped, std::size_t number) {
 
 }  // namespace
 
-Program read_program(std::string_view text) {
+Program read_program(std::string_view text, std::size_t longest_line) {
     Program program;
     std::size_t number = 0;
     while (!text.empty()) {
@@ -62,7 +62,7 @@ Program read_program(std::string_view text) {
         ++number;
         std::string stripped = strip_gcode(raw);
         if (!stripped.empty() && stripped != "%") {
-            program.lines.push_back(read_line(std::move(stripped), number));
+            program.lines.push_back(read_line(std::move(stripped), number, longest_line));
         }
     }
     if (program.lines.empty()) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drivers/device.h"
+#include "drivers/grbl/protocol.h"
 
 namespace leafcutter::drivers {
 
@@ -25,15 +26,16 @@ struct Program {
     std::vector<ProgramLine> lines;
 };
 
-// Throws ProgramRefused, naming the line, for a line that Grbl can't take: longer than 79
-// characters, words that can't be read, `$` commands, bytes that Grbl takes for real-time commands.
-Program read_program(std::string_view text);
+// Throws ProgramRefused, naming the line, for a line that Grbl can't take: longer than its line
+// buffer, words that can't be read, `$` commands, bytes that Grbl takes for real-time commands.
+Program read_program(std::string_view text, std::size_t longest_line = GrblProtocol::kMaxLine);
 
 // What a program is held against. Lengths in mm.
 struct MachineFacts {
     bool laser_mode = false;            // $32
     bool reports_inches = false;        // $13
     std::optional<double> s_max;        // $30
+    double power_cap_percent = 100.0;   // Of $30; a higher S is refused.
     std::array<double, 2> travel_mm{};  // $130, $131; 0: unknown.
     // Where the work origin lies in the travel, 0 at its low end; unknown without homing.
     std::optional<std::array<double, 2>> origin_in_travel_mm;
@@ -41,7 +43,7 @@ struct MachineFacts {
 };
 
 // Throws ProgramRefused with the line, or Refused for the machine's settings, and what to do.
-// Accepts M3 as well as M4: only $32=1 makes either safe.
+// M4 only: with M3 the beam stays lit where the machine stands once its sender dies.
 void preflight(const Program& program, const MachineFacts& machine);
 
 }  // namespace leafcutter::drivers

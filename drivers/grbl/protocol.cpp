@@ -11,6 +11,7 @@ namespace leafcutter::drivers {
 namespace {
 
 constexpr std::size_t kLongestReply = 512;
+constexpr std::size_t kAnswersKept = 8;
 
 bool starts_with(std::string_view text, std::string_view start) {
     return text.substr(0, start.size()) == start;
@@ -27,6 +28,14 @@ int number_after(std::string_view line, std::size_t at) {
     int code = 0;
     std::from_chars(line.data() + at, line.data() + line.size(), code);
     return code;
+}
+
+// What is left of an "ok" after a byte of it was lost or changed: an "error:N" is never so short.
+constexpr std::size_t kLongestGarbledOk = 3;
+constexpr std::size_t kLongestGarbledError = 9;
+
+bool begins_like_a_message(char letter) {
+    return letter == '[' || letter == '<' || letter == '>' || letter == '$';
 }
 
 bool is_setting(std::string_view line) {
@@ -78,6 +87,10 @@ GrblEvent GrblProtocol::classify(std::string line) const {
         event.kind = Kind::Setting;
     } else if (line.front() == '[' && line.back() == ']') {
         event.kind = Kind::Message;
+    } else if (line.size() <= kLongestGarbledOk) {
+        event.kind = Kind::Garbled;
+    } else if (line.size() <= kLongestGarbledError && !begins_like_a_message(line.front())) {
+        event.kind = Kind::GarbledError;
     }
     event.text = std::move(line);
     return event;
@@ -86,8 +99,22 @@ GrblEvent GrblProtocol::classify(std::string line) const {
 void GrblProtocol::count_answer() {
     if (!line_sizes_.empty()) {
         bytes_in_flight_ -= line_sizes_.front();
+        answered_.push_back(line_sizes_.front());
         line_sizes_.pop_front();
+        if (answered_.size() > kAnswersKept) {
+            answered_.pop_front();
+        }
     }
+}
+
+// The longest of the lines that a doubled "ok" could have let out of the count.
+std::size_t GrblProtocol::reserve() const {
+    return answered_.empty() ? 0 : *std::max_element(answered_.begin(), answered_.end());
+}
+
+void GrblProtocol::take_back_answer(std::size_t bytes) {
+    line_sizes_.push_front(bytes);
+    bytes_in_flight_ += bytes;
 }
 
 std::optional<std::string> GrblProtocol::offer(std::string_view line) {
@@ -95,10 +122,10 @@ std::optional<std::string> GrblProtocol::offer(std::string_view line) {
     const bool foreign = std::any_of(line.begin(), line.end(), [](char byte) {
         return byte == '\n' || byte == '\r' || is_realtime_byte(byte);
     });
-    if (foreign || line.size() > kMaxLine || size > rx_buffer_bytes_) {
+    if (foreign || line.size() > longest_line_ || size > rx_buffer_bytes_) {
         throw std::invalid_argument("\"" + std::string(line) + "\": no line that Grbl can take");
     }
-    if (bytes_in_flight_ + size > rx_buffer_bytes_) {
+    if (bytes_in_flight_ > 0 && bytes_in_flight_ + size + reserve() > rx_buffer_bytes_) {
         return std::nullopt;
     }
     bytes_in_flight_ += size;
@@ -109,6 +136,7 @@ std::optional<std::string> GrblProtocol::offer(std::string_view line) {
 void GrblProtocol::forget_lines() {
     bytes_in_flight_ = 0;
     line_sizes_.clear();
+    answered_.clear();
 }
 
 }  // namespace leafcutter::drivers

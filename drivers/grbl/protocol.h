@@ -2,7 +2,9 @@
 //
 // Flow control is character counting: the sender keeps the bytes of unacknowledged lines within
 // the controller's receive buffer, and each "ok" or "error:N" frees the oldest line. Nothing else
-// counts: not the banner, "ALARM:N", "[…]", "<…>", "$n=v", nor ">startup line:ok".
+// counts: not the banner, "ALARM:N", "[…]", "<…>", "$n=v", nor ">startup line:ok". Room for one
+// more line than is counted stays free, so that an "ok" that noise has doubled can't overfill the
+// buffer.
 
 #pragma once
 
@@ -16,7 +18,19 @@
 namespace leafcutter::drivers {
 
 struct GrblEvent {
-    enum class Kind { Ack, Error, Alarm, Status, Banner, Setting, Message, Other };
+    // Garbled: what noise has left of an "ok"; GarbledError: of "ok" or "error:N", nobody knows.
+    enum class Kind {
+        Ack,
+        Error,
+        Alarm,
+        Status,
+        Banner,
+        Setting,
+        Message,
+        Garbled,
+        GarbledError,
+        Other
+    };
 
     Kind kind = Kind::Other;
     int code = 0;      // N of "error:N" or "ALARM:N", otherwise 0.
@@ -45,17 +59,31 @@ public:
     std::size_t rx_buffer_bytes() const { return rx_buffer_bytes_; }
 
     void set_rx_buffer_bytes(std::size_t bytes) { rx_buffer_bytes_ = bytes; }
+    std::size_t longest_line() const { return longest_line_; }
+    void set_longest_line(std::size_t characters) { longest_line_ = characters; }
 
     // After a reset: the controller has forgotten what it was sent.
     void forget_lines();
+
+    std::size_t oldest_line_bytes() const { return line_sizes_.empty() ? 0 : line_sizes_.front(); }
+
+    // The oldest line counts as answered though no answer was heard.
+    void resolve_oldest() { count_answer(); }
+
+    // A line has been counted as answered too early: `bytes` are still in the controller.
+    void take_back_answer(std::size_t bytes);
 
 private:
     GrblEvent classify(std::string line) const;
     void count_answer();
 
+    std::size_t reserve() const;
+
     std::size_t rx_buffer_bytes_;
+    std::size_t longest_line_ = kMaxLine;
     std::size_t bytes_in_flight_ = 0;
     std::deque<std::size_t> line_sizes_;  // Sent, not yet acknowledged; oldest first.
+    std::deque<std::size_t> answered_;    // Sizes of the lines answered last.
     std::string partial_;
 };
 

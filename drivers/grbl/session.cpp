@@ -23,7 +23,12 @@ constexpr bool moves(MachineState state) {
 
 }  // namespace
 
-GrblSession::GrblSession(Time now) : now_(now), phase_since_(now), halt_since_(now), heard_(now) {
+GrblSession::GrblSession(Time now, double power_cap_percent)
+    : now_(now),
+      phase_since_(now),
+      halt_since_(now),
+      heard_(now),
+      power_cap_percent_(power_cap_percent) {
     progress_.outcome = JobOutcome::Done;
     status_.state = MachineState::Unknown;
 }
@@ -34,9 +39,14 @@ void GrblSession::receive(std::string_view bytes, Time now) {
         heard_ = now;
         unanswered_polls_ = 0;
     }
-    for (const GrblEvent& event : protocol_.receive(bytes)) {
-        lines_.push_back(event.text);
-        handle(event);
+    // Line by line: what a report says is held against the count of its own moment.
+    while (!bytes.empty()) {
+        const std::size_t end = std::min(bytes.find('\n'), bytes.size() - 1) + 1;
+        for (const GrblEvent& event : protocol_.receive(bytes.substr(0, end))) {
+            lines_.push_back(event.text);
+            handle(event);
+        }
+        bytes.remove_prefix(end);
     }
 }
 
@@ -93,8 +103,9 @@ void GrblSession::start(std::string_view text) {
         throw Refused(fmt::format("start: the machine is busy ({}); it must be idle",
                                   to_string(status_.state)));
     }
-    const Program program = read_program(text);
+    const Program program = read_program(text, protocol_.longest_line());
     preflight(program, facts());
+    wanted_overrides_.reset();
     progress_ = {JobOutcome::Running, program.lines.size(), 0, 0, {}};
     status_.message.clear();
     finishing_ = cancelling_ = false;
@@ -191,12 +202,75 @@ void GrblSession::console(std::string_view line) {
     } else {
         require_ready("console");
         if (std::any_of(line.begin(), line.end(), is_realtime_byte) ||
-            line.find('\n') != line.npos || line.size() > GrblProtocol::kMaxLine) {
-            throw Refused(
-                "console: one line of at most 79 characters, without ? ! ~ and non-ASCII bytes");
+            line.find('\n') != line.npos || line.size() > protocol_.longest_line()) {
+            throw Refused(fmt::format(
+                "console: one line of at most {} characters, without ? ! ~ and non-ASCII bytes",
+                protocol_.longest_line()));
         }
         submit(std::string(line));
     }
+}
+
+void GrblSession::set_overrides(const std::array<int, 3>& percent) {
+    if (phase_ != Phase::Ready) {
+        throw Refused("overrides: the machine has not answered yet");
+    }
+    constexpr int kLeast = 10;
+    constexpr int kMost = 200;
+    std::array<int, 3> wanted = percent;
+    wanted[0] = std::clamp(wanted[0], kLeast, kMost);
+    wanted[1] = wanted[1] > 75 ? 100 : (wanted[1] > 37 ? 50 : 25);  // Grbl has these three.
+    wanted[2] = std::clamp(wanted[2], kLeast, kMost);
+    wanted_overrides_ = wanted;
+    step_overrides();
+}
+
+namespace {
+
+constexpr char byte_of(int code) {
+    return static_cast<char>(code);
+}
+
+// The byte that brings a percentage nearer; `first` resets it, then come +10, -10, +1, -1.
+char override_step(int now, int wanted, int first) {
+    const int difference = wanted - now;
+    if (wanted == 100) {
+        return byte_of(first);
+    }
+    if (difference >= 10 || difference <= -10) {
+        return byte_of(difference > 0 ? first + 1 : first + 2);
+    }
+    return byte_of(difference > 0 ? first + 3 : first + 4);
+}
+
+}  // namespace
+
+// One step of each at a time: the firmware drops repeats that come before it has served the first.
+// The next follows when a report shows where it has got.
+void GrblSession::step_overrides() {
+    if (!wanted_overrides_) {
+        return;
+    }
+    const std::array<int, 3>& now = status_.override_percent;
+    const std::array<int, 3> wanted = *wanted_overrides_;
+    if (now == wanted) {
+        wanted_overrides_.reset();
+        return;
+    }
+    constexpr int kFeed = 0x90;
+    constexpr int kRapid = 0x95;
+    constexpr int kPower = 0x99;
+    if (now[0] != wanted[0]) {
+        send_realtime(override_step(now[0], wanted[0], kFeed));
+    }
+    if (now[1] != wanted[1]) {
+        send_realtime(byte_of(kRapid + (wanted[1] == 100 ? 0 : (wanted[1] == 50 ? 1 : 2))));
+    }
+    if (now[2] != wanted[2]) {
+        send_realtime(override_step(now[2], wanted[2], kPower));
+    }
+    overrides_stepped_ = now_;
+    poll_soon();
 }
 
 void GrblSession::lose_link(const std::string& reason) {
@@ -224,6 +298,7 @@ bool GrblSession::send_line(const Pending& line) {
     }
     output_ += *bytes;
     pending_.push_back(line);
+    line_sent_ = now_;
     standing_since_.reset();
     progress_.lines_sent += line.origin == Origin::Job ? 1 : 0;
     return true;
@@ -302,6 +377,8 @@ void GrblSession::begin_reset() {
 void GrblSession::forget_lines() {
     protocol_.forget_lines();
     pending_.clear();
+    garbled_oks_ = 0;
+    short_reports_ = 0;
     standing_since_.reset();
 }
 
@@ -317,6 +394,7 @@ MachineFacts GrblSession::facts() const {
     if (settings_.count(30) != 0) {
         facts.s_max = settings_value(30, 0.0);
     }
+    facts.power_cap_percent = power_cap_percent_;
     facts.travel_mm = {settings_value(130, 0.0), settings_value(131, 0.0)};
     facts.work_position_mm = {status_.work_position_mm[0], status_.work_position_mm[1]};
     // Soft limits need homing, so only with them is the place of the work origin known. The travel
@@ -325,7 +403,7 @@ MachineFacts GrblSession::facts() const {
     if (settings_value(20, 0.0) != 0.0 && work_offset_) {
         std::array<double, 2> origin{};
         const int homes_low = static_cast<int>(settings_value(23, 0.0));
-        const bool forced = build_options_.find('Z') != std::string::npos;
+        const bool forced = firmware_.build_options().find('Z') != std::string::npos;
         for (std::size_t axis = 0; axis < 2; ++axis) {
             const bool positive = forced && (homes_low & (1 << axis)) != 0;
             origin[axis] = (*work_offset_)[axis] + (positive ? 0.0 : facts.travel_mm[axis]);

@@ -6,6 +6,7 @@
 
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <deque>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "drivers/device.h"
+#include "drivers/grbl/firmware.h"
 #include "drivers/grbl/program.h"
 #include "drivers/grbl/protocol.h"
 #include "drivers/grbl/status_report.h"
@@ -25,18 +27,24 @@ namespace leafcutter::drivers {
 
 class GrblSession final : public Session {
 public:
-    explicit GrblSession(Time now);
+    // Programs of a higher S than this part of $30 are refused.
+    explicit GrblSession(Time now, double power_cap_percent = 100.0);
 
     void receive(std::string_view bytes, Time now) override;
     void tick(Time now) override;
     std::string take_output() override;
     std::vector<std::string> take_lines() override;
 
+    GrblFirmware firmware() const { return firmware_.kind(); }
+
     // Attached, settings known, no halt under way.
     bool ready() const { return phase_ == Phase::Ready && halt_ == Halt::None; }
-    bool attached() const override { return ready() && status_.state != MachineState::Unknown; }
+    bool attached() const override { return ready() && reported_; }
 
     std::size_t bytes_in_flight() const { return protocol_.bytes_in_flight(); }
+
+    // Answers that noise on the link had swallowed or doubled, put right without a stop.
+    std::size_t answers_healed() const { return answers_healed_; }
 
     bool may_close() const override;
 
@@ -50,6 +58,10 @@ public:
     void jog(const Jog& jog) override;
     void jog_cancel() override;
     void console(std::string_view line) override;
+    void set_overrides(const std::array<int, 3>& percent) override;
+
+    // $ settings, as the controller listed them or accepted them since.
+    const std::map<int, double>& settings() const { return settings_; }
     void lose_link(const std::string& reason) override;
     std::string_view last_words() const override { return "\x18"; }
 
@@ -69,6 +81,9 @@ private:
         double dwell_s = 0.0;
     };
 
+    // It reads a line only when it has done with the one before, so that what it has received and
+    // not read can be held against what it was sent.
+    bool reads_line_by_line() const { return firmware_.kind() == GrblFirmware::Grbl; }
     bool job_runs() const { return progress_.outcome == JobOutcome::Running; }
     double settings_value(int number, double otherwise) const;
     MachineFacts facts() const;
@@ -95,7 +110,13 @@ private:
     void attach_by(const StatusReport& report);
     void halt_by(const StatusReport& report);
 
-    // Watching.
+    void step_overrides();
+    void handle_garbled(const GrblEvent& event);
+    void resolve_oldest();
+
+    // Watching: session_watch.cpp
+    void watch_buffer(const StatusReport& report);
+    void heal_or_fail(const std::string& what);
     void watch_silence() const;
     void watch_attach();
     void watch_halt();
@@ -119,7 +140,13 @@ private:
     int unanswered_polls_ = 0;
     std::optional<Time> standing_since_;     // Idle with lines unanswered.
     std::optional<Time> beam_stands_since_;  // Idle or Hold:0 with S > 0 in FS.
+    Time line_sent_;                         // When the last line was sent.
+    int short_reports_ = 0;                  // In a row, that show fewer bytes than are unanswered.
+    std::size_t garbled_oks_ = 0;            // Each stands for an answer that was not counted.
+    std::size_t answers_healed_ = 0;
+    std::size_t rx_capacity_ = 0;  // As its reports show it when empty.
     bool resume_wanted_ = false;
+    bool reported_ = false;  // Since it became ready.
     bool critical_alarm_ = false;
 
     GrblProtocol protocol_;
@@ -134,9 +161,12 @@ private:
 
     DeviceStatus status_;
     JobProgress progress_;
+    double power_cap_percent_;
+    std::optional<std::array<int, 3>> wanted_overrides_;
+    Time overrides_stepped_;
     std::optional<int> sub_state_;
     std::map<int, double> settings_;
-    std::string build_options_;
+    FirmwareSigns firmware_;
     std::optional<std::array<double, 3>> work_offset_;
 };
 

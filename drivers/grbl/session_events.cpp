@@ -13,19 +13,9 @@ namespace leafcutter::drivers {
 
 namespace {
 
-using std::chrono::duration;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kBannerWait{2000};  // An Uno's boot loader takes 1.5 s.
-constexpr milliseconds kResetWait{1000};
-constexpr milliseconds kSilenceInJob{2000};
-constexpr milliseconds kSilence{5000};
-constexpr int kUnansweredPolls = 5;
-constexpr milliseconds kStandingWait{
-    1000};  // Idle this long with lines unanswered: an answer is lost.
-constexpr milliseconds kBeamWait{300};
 constexpr milliseconds kStaleReport{300};
-constexpr double kHoldMargin = 1.0;  // Seconds on top of the braking time.
 
 }  // namespace
 
@@ -52,6 +42,10 @@ void GrblSession::handle(const GrblEvent& event) {
                 handle_status(*report);
             }
             break;
+        case GrblEvent::Kind::Garbled:
+        case GrblEvent::Kind::GarbledError:
+            handle_garbled(event);
+            break;
         case GrblEvent::Kind::Other:
             break;
     }
@@ -71,7 +65,7 @@ void GrblSession::handle_answer(const GrblEvent& event) {
         handle_setting(line.text);  // Written by hand.
     }
     if (event.kind == GrblEvent::Kind::Error) {
-        const std::string text = error_text_of_grbl(event.code);
+        const std::string text = error_text(firmware_.kind(), event.code);
         if (line.origin == Origin::Command) {
             status_.message = line.text + ": " + text;
         } else if (job_runs() && !cancelling_) {
@@ -85,6 +79,7 @@ void GrblSession::handle_answer(const GrblEvent& event) {
         send_line({Origin::Command, "$$", 0, true, 0.0});
     } else if (phase_ == Phase::AskingSettings) {
         phase_ = Phase::Ready;
+        reported_ = false;
         poll_soon();
     } else if (job_runs() && !cancelling_ && job_.empty() && pending_.empty()) {
         finishing_ = true;
@@ -92,10 +87,38 @@ void GrblSession::handle_answer(const GrblEvent& event) {
     }
 }
 
+// An "ok" with a flipped or lost byte is kept as evidence, and counted once the controller shows
+// that it has nothing left to answer. What may have been an error stops the job.
+void GrblSession::handle_garbled(const GrblEvent& event) {
+    if (pending_.empty() || !job_runs()) {
+        return;
+    }
+    if (event.kind == GrblEvent::Kind::Garbled) {
+        ++garbled_oks_;
+        poll_soon();
+        return;
+    }
+    end_job(JobOutcome::Failed,
+            fmt::format("the answer \"{}\" near line {} ({}) is garbled and may have been an "
+                        "error: the link loses bytes",
+                        event.text, pending_.front().number, pending_.front().text));
+    begin_halt();
+}
+
+// As if the oldest line's "ok" had been heard.
+void GrblSession::resolve_oldest() {
+    ++answers_healed_;
+    protocol_.resolve_oldest();
+    GrblEvent answer;
+    answer.kind = GrblEvent::Kind::Ack;
+    answer.text = "ok";
+    handle_answer(answer);
+}
+
 void GrblSession::handle_alarm(const GrblEvent& event) {
     status_.state = MachineState::Alarm;
     status_.alarm_code = event.code;
-    status_.message = alarm_text(event.code);
+    status_.message = alarm_text(firmware_.kind(), event.code);
     critical_alarm_ = event.code == 1 || event.code == 2;
     const std::string place =
         pending_.empty()
@@ -109,9 +132,12 @@ void GrblSession::handle_alarm(const GrblEvent& event) {
 }
 
 void GrblSession::handle_banner(const GrblEvent& event) {
-    status_.firmware = event.text.substr(0, event.text.find(" ["));
+    firmware_.take(event.text);
+    status_.firmware = firmware_.name();
     critical_alarm_ = false;
     resume_wanted_ = false;
+    wanted_overrides_.reset();
+    status_.override_percent = {100, 100, 100};
     forget_lines();
     const bool expected = halt_ != Halt::None || phase_ != Phase::Ready;
     halt_ = Halt::None;
@@ -143,18 +169,13 @@ void GrblSession::handle_setting(const std::string& text) {
 
 void GrblSession::handle_message(const GrblEvent& event) {
     const std::string& text = event.text;
-    if (text.substr(0, 5) == "[OPT:") {
-        const std::size_t first = text.find(',');
-        const std::size_t second = first == std::string::npos ? first : text.find(',', first + 1);
-        build_options_ = text.substr(5, first == std::string::npos ? first : first - 5);
-        if (second != std::string::npos) {
-            status_.planner_blocks =
-                static_cast<std::size_t>(std::strtoul(text.c_str() + first + 1, nullptr, 10)) + 1;
-            const auto rx =
-                static_cast<std::size_t>(std::strtoul(text.c_str() + second + 1, nullptr, 10));
-            // One byte below what it claims, and never below what every Grbl has.
-            protocol_.set_rx_buffer_bytes(
-                rx > GrblProtocol::kSafeRxBytes ? rx - 1 : GrblProtocol::kSafeRxBytes);
+    if (phase_ == Phase::AskingVersion) {
+        firmware_.take(text);
+        status_.firmware = firmware_.name();
+        protocol_.set_rx_buffer_bytes(firmware_.receive_budget());
+        protocol_.set_longest_line(firmware_.longest_line());
+        if (firmware_.planner_blocks() > 0) {
+            status_.planner_blocks = firmware_.planner_blocks() + 1;
         }
     } else if (text.substr(0, 5) == "[MSG:" && !job_runs()) {
         status_.message = text.substr(5, text.size() - 6);
@@ -172,10 +193,15 @@ void GrblSession::handle_status(const StatusReport& report) {
     status_.power_s = report.power_s.value_or(status_.power_s);
     status_.override_percent = report.override_percent.value_or(status_.override_percent);
     take_positions(report);
+    constexpr milliseconds kOverrideWait{700};  // A report of it follows at once, or it was lost.
+    if (report.override_percent || now_ - overrides_stepped_ > kOverrideWait) {
+        step_overrides();
+    }
     if (phase_ == Phase::Greeting) {
         attach_by(report);
         return;
     }
+    reported_ = reported_ || phase_ == Phase::Ready;
     halt_by(report);
     const bool stopped = report.state == MachineState::Hold || report.state == MachineState::Door;
     if (resume_wanted_ && stopped && report.sub_state.value_or(0) == 0) {
@@ -184,6 +210,7 @@ void GrblSession::handle_status(const StatusReport& report) {
         resume_wanted_ = false;
     }
     watch_standing_beam(report);
+    watch_buffer(report);
     watch_lost_answer(report);
     if (job_runs() && finishing_ && report.state == MachineState::Idle) {
         end_job(JobOutcome::Done, {});
@@ -236,93 +263,6 @@ void GrblSession::halt_by(const StatusReport& report) {
         (report.state == MachineState::Idle || report.state == MachineState::Check) &&
         now_ - halt_since_ > kStaleReport;
     if ((held && report.sub_state == 0) || stands_otherwise || rests) {
-        begin_reset();
-    }
-}
-
-double GrblSession::pending_dwell_s() const {
-    double sum = 0.0;
-    for (const Pending& line : pending_) {
-        sum += line.dwell_s;
-    }
-    return sum;
-}
-
-// A swallowed or garbled "ok" shows as a machine that stands idle while we still wait for answers.
-void GrblSession::watch_lost_answer(const StatusReport& report) {
-    const bool idle = report.state == MachineState::Idle || report.state == MachineState::Check;
-    if (!idle || pending_.empty() || halt_ != Halt::None) {
-        standing_since_.reset();
-        return;
-    }
-    if (!standing_since_) {
-        standing_since_ = now_;
-    }
-    if (duration<double>(now_ - *standing_since_ - kStandingWait).count() <= pending_dwell_s()) {
-        return;
-    }
-    const std::string what = fmt::format(
-        "the machine stands, but {} lines are unanswered, the oldest is line {} ({}): "
-        "the link loses bytes",
-        pending_.size(), pending_.front().number, pending_.front().text);
-    if (phase_ == Phase::Ready) {
-        status_.message = what;
-        end_job(JobOutcome::Failed, what);
-        begin_halt();
-    } else {
-        begin_reset();
-    }
-}
-
-void GrblSession::watch_standing_beam(const StatusReport& report) {
-    const bool stands = report.state == MachineState::Idle ||
-                        (report.state == MachineState::Hold && report.sub_state.value_or(0) == 0);
-    if (!stands || report.power_s.value_or(0.0) <= 0.0 || halt_ == Halt::Resetting) {
-        beam_stands_since_.reset();
-        return;
-    }
-    if (!beam_stands_since_) {
-        beam_stands_since_ = now_;
-    }
-    if (duration<double>(now_ - *beam_stands_since_ - kBeamWait).count() > pending_dwell_s()) {
-        beam_stands_since_.reset();
-        status_.message = "the beam was lit while the machine stood; it was reset";
-        end_job(JobOutcome::Failed, status_.message);
-        begin_reset();
-    }
-}
-
-void GrblSession::watch_silence() const {
-    const bool homing = !pending_.empty() && pending_.front().text == "$H";
-    if (homing || critical_alarm_ || status_.state == MachineState::Home ||
-        unanswered_polls_ < kUnansweredPolls) {
-        return;
-    }
-    if (now_ - heard_ > (job_runs() ? kSilenceInJob : kSilence)) {
-        throw LinkLost(
-            phase_ == Phase::Ready
-                ? "the controller has fallen silent: it answers no status query"
-                : "no answer: is it a Grbl controller, is it switched on, is the baud rate right?");
-    }
-}
-
-void GrblSession::watch_attach() {
-    const bool greeting = phase_ == Phase::Greeting && status_.state == MachineState::Unknown;
-    if ((greeting && now_ - phase_since_ > kBannerWait) ||
-        (phase_ == Phase::Resetting && now_ - phase_since_ > kResetWait)) {
-        begin_reset();
-    }
-}
-
-void GrblSession::watch_halt() {
-    if (halt_ == Halt::Holding) {
-        const double speed = std::max(settings_value(110, 0.0), settings_value(111, 0.0)) / 60.0;
-        const double acceleration =
-            std::max(1.0, std::min(settings_value(120, 10.0), settings_value(121, 10.0)));
-        if (duration<double>(now_ - halt_since_).count() > speed / acceleration + kHoldMargin) {
-            begin_reset();
-        }
-    } else if (halt_ == Halt::Resetting && now_ - halt_since_ > kResetWait) {
         begin_reset();
     }
 }

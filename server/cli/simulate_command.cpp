@@ -61,6 +61,7 @@ std::vector<drivers::Fault> faults_of(const SimulateOptions& options) {
 
 std::unique_ptr<drivers::SimMachine> make_grbl(const SimulateOptions& options) {
     drivers::GrblMachineOptions machine;
+    machine.eeprom_time_s = 0.02;  // As an ATmega takes for a setting.
     machine.bed_width_mm = options.width_mm.value_or(machine.bed_width_mm);
     machine.bed_height_mm = options.height_mm.value_or(machine.bed_height_mm);
     return std::make_unique<drivers::FaultyMachine>(machine, faults_of(options));

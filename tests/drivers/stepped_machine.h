@@ -32,6 +32,9 @@ public:
         now_ += std::chrono::duration_cast<Time::duration>(std::chrono::duration<double>(seconds));
         std::string answer = machine_.feed(session_.take_output());
         answer += machine_.advance(seconds);
+        if (noise && !answer.empty()) {
+            noise(answer);
+        }
         ++turn_;
         due_ = std::max(due_, turn_ + (delay ? delay() : 0));
         on_the_way_.emplace_back(std::move(answer), due_);
@@ -63,9 +66,7 @@ public:
     }
 
     bool attach() {
-        return run_until(
-            [this] { return session_.ready() && session_.status().state != MachineState::Unknown; },
-            10.0);
+        return run_until([this] { return session_.attached(); }, 10.0);
     }
 
     bool finish_job(double seconds = 600.0) {
@@ -76,7 +77,8 @@ public:
     double now_s() { return machine().now_s(); }
     std::size_t most_bytes_in_flight() const { return most_rx_in_flight_; }
 
-    std::function<int()> delay;  // In turns; empty: none.
+    std::function<int()> delay;                      // In turns; empty: none.
+    std::function<void(std::string& answer)> noise;  // On the way from the machine.
     JobWatch* watch = nullptr;
 
 private:

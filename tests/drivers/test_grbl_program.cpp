@@ -82,6 +82,14 @@ TEST(Preflight, NamesTheLineThatIsAtFault) {
     EXPECT_THAT(refusal("G0 A1\n"), HasSubstr("word A"));
 }
 
+TEST(Preflight, TakesM4AloneAndNoMoreThanTheCappedPower) {
+    EXPECT_THAT(refusal("G21\nM3 S100\nG1 X1 F100\nM5\n"), HasSubstr("line 2 (M3S100): M3"));
+    MachineFacts facts = laser();
+    facts.power_cap_percent = 60.0;
+    EXPECT_EQ(refusal("M4 S600\nG1 X1 F100\nM5\n", facts), "");
+    EXPECT_THAT(refusal("M4 S601\nG1 X1 F100\nM5\n", facts), HasSubstr("power_cap"));
+}
+
 TEST(Preflight, RefusesAProgramThatLeavesTheBeamOn) {
     EXPECT_THAT(refusal("M4 S500\nG1 X1 F100\n"), HasSubstr("M5"));
     EXPECT_EQ(refusal("M4 S500\nG1 X1 F100\nM30\n"), "");

@@ -88,6 +88,20 @@ TEST_F(PortDiscovery, SuspectsBrlttyWhenAnAdapterHasNoPort) {
     EXPECT_THAT(ports[0].trouble, HasSubstr("brltty"));
 }
 
+TEST_F(PortDiscovery, NamesTheProgramThatHoldsAPort) {
+    write("sys/class/tty/ttyS1/type", "4");
+    fs::create_directories(base_ / "sys/class/tty/ttyS1/device");
+    write("dev/ttyS1", "");
+    write("proc/4711/comm", "cncjs");
+    fs::create_directories(base_ / "proc/4711/fd");
+    fs::create_symlink(fs::canonical(base_ / "dev/ttyS1"), base_ / "proc/4711/fd/7");
+    write("proc/self/comm", "not a number");
+    roots_.proc = (base_ / "proc").string();
+    const auto ports = find_ports(roots_);
+    ASSERT_EQ(ports.size(), 1U);
+    EXPECT_THAT(ports[0].trouble, HasSubstr("cncjs (process 4711)"));
+}
+
 TEST_F(PortDiscovery, KnowsALihuiyuBoardByItsId) {
     add_usb("1-4", "1a86", "5512");
     const auto ports = find_ports(roots_);
