@@ -1,5 +1,6 @@
 #include "drivers/burn/beam_follower.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace leafcutter::drivers {
@@ -9,7 +10,9 @@ namespace {
 using Kind = JournalRecord::Kind;
 
 // Of what may be on the wire without being known to be: short lines go together, a long one alone.
+// More where the beam is fast, or the stream would wait for the disk.
 constexpr double kAheadMm = 0.5;
+constexpr double kAheadSeconds = 0.04;
 constexpr double kAstrayMm = 1.0;
 
 Point work_position(const DeviceStatus& status) {
@@ -69,7 +72,8 @@ void BeamFollower::reserve(std::size_t sent) {
     if (reserved_ > safe || reserved_ >= path_->lines()) {
         return;  // Asked for already, or nothing is left.
     }
-    const double most = path_->burnt_after(sent) + kAheadMm;
+    const double feed = path_->feed_after(sent) / 60.0;
+    const double most = path_->burnt_after(sent) + std::max(kAheadMm, kAheadSeconds * feed);
     std::size_t wanted = reserved_;
     while (wanted < path_->lines() && path_->burnt_after(wanted + 1) <= most) {
         ++wanted;
