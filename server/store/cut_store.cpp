@@ -139,7 +139,8 @@ std::optional<CutRecord> CutStore::find(const std::string& id) const {
 std::vector<CutRecord> CutStore::list(int limit) const {
     std::vector<CutRecord> cuts;
     database_.read([&](SQLite::Database& database) {
-        SQLite::Statement query(database, std::string(kSelectCut) + "ORDER BY ordinal DESC LIMIT ?");
+        SQLite::Statement query(database,
+                                std::string(kSelectCut) + "ORDER BY ordinal DESC LIMIT ?");
         query.bind(1, limit);
         while (query.executeStep()) {
             cuts.push_back(cut_from(database, query));
