@@ -63,6 +63,9 @@ void BeamFollower::observe(const JobProgress& progress, const DeviceStatus& stat
                            tracker_.near(work_position(status), kAstrayMm);
         astray_ = there ? 0 : astray_ + 1;
     }
+    if (!reports_known_) {
+        restarts_ = status.restarts;
+    }
     reports_known_ = true;  // The first one seen is older than the program.
     burnt_mm_ = path_->burnt_at(tracker_.heard().likely_mm);
 }
@@ -94,7 +97,8 @@ BeamEnd BeamFollower::end(const JobProgress& progress, const DeviceStatus& statu
         tracker_.sent(reserved_);
         // A controller that restarted takes the place where it stands for its zero.
         const bool at_zero = status.machine_position_mm == std::array<double, 3>{};
-        const bool fresh = at_zero && tracker_.heard().least_mm > 1.0;
+        const bool fresh = (at_zero && tracker_.heard().least_mm > 1.0) ||
+                           (reports_known_ && status.restarts != restarts_);
         const bool locked = status.state == MachineState::Alarm;
         const bool on_path = status.reports > 0 && !fresh && tracker_.stands(at);
         how = !on_path ? BeamEnd::Restarted : locked ? BeamEnd::Stopped : BeamEnd::Stands;

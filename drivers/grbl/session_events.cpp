@@ -114,6 +114,7 @@ void GrblSession::handle_banner(const GrblEvent& event) {
     resume_wanted_ = false;
     forget_lines();
     const bool expected = halt_ != Halt::None || phase_ != Phase::Ready;
+    status_.restarts += expected ? 0 : 1;
     halt_ = Halt::None;
     poll_soon();
     if (cancelling_) {
