@@ -43,6 +43,7 @@ struct DeviceStatus {
     std::string message;                                 // Last alarm or error, with its meaning.
     std::string firmware;
     std::size_t reports = 0;         // Measured positions received so far; 0: it reports none.
+    std::size_t restarts = 0;        // Times that the controller began anew unasked.
     std::size_t planner_blocks = 0;  // Moves it holds unmoved at most; 0: not known.
 };
 

@@ -1,5 +1,6 @@
 #include "drivers/burn/beam_follower.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace leafcutter::drivers {
@@ -9,7 +10,9 @@ namespace {
 using Kind = JournalRecord::Kind;
 
 // Of what may be on the wire without being known to be: short lines go together, a long one alone.
+// More where the beam is fast, or the stream would wait for the disk.
 constexpr double kAheadMm = 0.5;
+constexpr double kAheadSeconds = 0.04;
 constexpr double kAstrayMm = 1.0;
 
 Point work_position(const DeviceStatus& status) {
@@ -60,6 +63,9 @@ void BeamFollower::observe(const JobProgress& progress, const DeviceStatus& stat
                            tracker_.near(work_position(status), kAstrayMm);
         astray_ = there ? 0 : astray_ + 1;
     }
+    if (!reports_known_) {
+        restarts_ = status.restarts;
+    }
     reports_known_ = true;  // The first one seen is older than the program.
     burnt_mm_ = path_->burnt_at(tracker_.heard().likely_mm);
 }
@@ -69,7 +75,8 @@ void BeamFollower::reserve(std::size_t sent) {
     if (reserved_ > safe || reserved_ >= path_->lines()) {
         return;  // Asked for already, or nothing is left.
     }
-    const double most = path_->burnt_after(sent) + kAheadMm;
+    const double feed = path_->feed_after(sent) / 60.0;
+    const double most = path_->burnt_after(sent) + std::max(kAheadMm, kAheadSeconds * feed);
     std::size_t wanted = reserved_;
     while (wanted < path_->lines() && path_->burnt_after(wanted + 1) <= most) {
         ++wanted;
@@ -90,7 +97,8 @@ BeamEnd BeamFollower::end(const JobProgress& progress, const DeviceStatus& statu
         tracker_.sent(reserved_);
         // A controller that restarted takes the place where it stands for its zero.
         const bool at_zero = status.machine_position_mm == std::array<double, 3>{};
-        const bool fresh = at_zero && tracker_.heard().least_mm > 1.0;
+        const bool fresh = (at_zero && tracker_.heard().least_mm > 1.0) ||
+                           (reports_known_ && status.restarts != restarts_);
         const bool locked = status.state == MachineState::Alarm;
         const bool on_path = status.reports > 0 && !fresh && tracker_.stands(at);
         how = !on_path ? BeamEnd::Restarted : locked ? BeamEnd::Stopped : BeamEnd::Stands;

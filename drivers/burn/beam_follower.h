@@ -58,6 +58,7 @@ private:
     std::size_t sent_ = 0;
     std::size_t acknowledged_ = 0;
     std::size_t reports_ = 0;
+    std::size_t restarts_ = 0;
     bool reports_known_ = false;
     std::size_t astray_ = 0;
     std::atomic<double> burnt_mm_{0.0};

@@ -82,11 +82,13 @@ void BeamPath::add(const Point& to_mm, const PathPiece& kind) {
     pieces_.push_back(piece);
 }
 
+std::size_t BeamPath::pieces_after(std::size_t lines) const {
+    const std::size_t most = std::min(lines, line_ends_.size());
+    return most == 0 ? 0 : line_ends_[most - 1];
+}
+
 double BeamPath::way_after(std::size_t lines) const {
-    if (lines == 0 || line_ends_.empty()) {
-        return 0.0;
-    }
-    return begin_mm(line_ends_[std::min(lines, line_ends_.size()) - 1]);
+    return begin_mm(pieces_after(lines));
 }
 
 std::size_t BeamPath::piece_at(double way_mm) const {
@@ -124,11 +126,13 @@ double BeamPath::burnt_at(double way_mm) const {
 }
 
 double BeamPath::burnt_after(std::size_t lines) const {
-    if (lines == 0 || line_ends_.empty()) {
-        return 0.0;
-    }
-    const std::size_t pieces = line_ends_[std::min(lines, line_ends_.size()) - 1];
+    const std::size_t pieces = pieces_after(lines);
     return pieces == 0 ? 0.0 : pieces_[pieces - 1].burnt_end_mm;
+}
+
+double BeamPath::feed_after(std::size_t lines) const {
+    const std::size_t next = pieces_after(lines);
+    return next < pieces_.size() ? pieces_[next].feed_mm_per_min : 0.0;
 }
 
 double BeamPath::way_of_burn(double burnt_mm) const {

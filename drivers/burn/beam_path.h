@@ -62,11 +62,15 @@ public:
     double burnt_at(double way_mm) const;
     double burnt_after(std::size_t lines) const;
 
+    // The feed of the first move behind so many lines; 0: there is none.
+    double feed_after(std::size_t lines) const;
+
     // The first place where that much is burnt; the inverse of burnt_at().
     double way_of_burn(double burnt_mm) const;
 
 private:
     void add(const Point& to_mm, const PathPiece& kind);
+    std::size_t pieces_after(std::size_t lines) const;
 
     Point start_mm_;
     std::vector<PathPiece> pieces_;

@@ -28,7 +28,8 @@ void BeamTracker::acknowledged(std::size_t lines, double t_s) {
     }
     const double planned = path_.way_after(lines);
     const std::size_t last = path_.piece_at(planned);
-    const std::size_t held = options_.planner_blocks;
+    constexpr std::size_t kMiscounted = 3;  // Answers that a bad link doubled.
+    const std::size_t held = options_.planner_blocks + kMiscounted;
     const double certain = last >= held ? path_.begin_mm(last + 1 - held) : 0.0;
     if (certain > range_.least_mm) {
         range_.least_mm = certain;
@@ -144,6 +145,10 @@ bool BeamTracker::stands(const Point& at_mm, Since since) {
         return false;
     }
     range_ = {place->nearest_mm, place->nearest_mm, place->nearest_mm};
+    if (since ==
+        Since::Alone) {  // It may have been stopped on the way, where the path meets itself.
+        range_ = {place->first_mm, place->nearest_mm, place->last_mm};
+    }
     return true;
 }
 

@@ -155,6 +155,10 @@ struct Replay {
                     kept = record.end == BeamEnd::Stands && distance(at, record.at_mm) < kSamePlace;
                 } else {
                     stand(record, BeamTracker::Since::Alone);
+                    // At the end of all that was sent: it went on alone, and was not stopped.
+                    if (std::abs(tracker.heard().likely_mm - path.way_after(sent)) < kSamePlace) {
+                        tracker.stands(record.at_mm);
+                    }
                 }
                 break;
         }

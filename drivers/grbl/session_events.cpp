@@ -140,6 +140,7 @@ void GrblSession::handle_banner(const GrblEvent& event) {
     status_.override_percent = {100, 100, 100};
     forget_lines();
     const bool expected = halt_ != Halt::None || phase_ != Phase::Ready;
+    status_.restarts += expected ? 0 : 1;
     halt_ = Halt::None;
     poll_soon();
     if (cancelling_) {

@@ -280,6 +280,83 @@ TEST_F(DeviceRunnerTest, AnAlarmInMidCutFailsItAndTheQueueWaits) {
     EXPECT_EQ(script.started(), 1U);
 }
 
+TEST_F(DeviceRunnerTest, AMachineOfItsOwnWaitsForAWordAfterACutThatEndedEarly) {
+    record.auto_start = true;
+    run_until_ready();
+    const CutRecord first = add_cut(1);
+    const CutRecord second = add_cut(1);
+    runner->wake();
+    ASSERT_TRUE(eventually([this] { return script.started() == 1; }));
+    EXPECT_TRUE(runner->abort(first.id));
+    ASSERT_TRUE(reaches(first, CutState::Aborted));
+    ASSERT_TRUE(eventually([this] { return runner->is_ready(); }));
+    runner->wake();
+    runner.reset();  // It has looked at its queue once more by then, and a new daemon waits, too.
+    EXPECT_EQ(state_of(second), CutState::Waiting);
+    run_until_ready();
+    runner->wake();
+    runner.reset();
+    EXPECT_EQ(state_of(second), CutState::Waiting);
+    EXPECT_EQ(script.started(), 1U);
+    run_until_ready();
+    runner->reset();
+    EXPECT_TRUE(reaches(second, CutState::Cutting));
+}
+
+TEST_F(DeviceRunnerTest, TheRestOfACutIsInOneHandAndNeverGoesByItself) {
+    record.auto_start = true;
+    run_until_ready();
+    const CutRecord cut = add_cut(2);
+    runner->wake();
+    ASSERT_TRUE(eventually([this] { return script.started() == 1; }));
+    EXPECT_TRUE(runner->abort(cut.id));
+    ASSERT_TRUE(reaches(cut, CutState::Aborted));
+    const CutRecord over = store->cuts.find(cut.id).value();
+    EXPECT_TRUE(store->cuts.may_be_finished(over));
+    const std::string program = blob("G1 X5 Y5 S10 F600\n");
+    const auto rest = store->cuts.add_rest(over, program);
+    ASSERT_TRUE(rest);
+    EXPECT_EQ(rest->program_sha256, program);
+    EXPECT_EQ(rest->sheets, over.sheets);
+    EXPECT_FALSE(store->cuts.may_be_finished(over));
+    EXPECT_FALSE(store->cuts.add_rest(over, program));
+    runner->reset();
+    runner->wake();
+    EXPECT_FALSE(store->cuts.last_begun_on(record.id)->is_rest());
+    // Withdrawn before it began, it leaves the rest to another.
+    ASSERT_TRUE(store->cuts.move(rest->id, CutState::Waiting, CutState::Aborted));
+    EXPECT_TRUE(store->cuts.may_be_finished(over));
+    const auto again = store->cuts.add_rest(over, program);
+    ASSERT_TRUE(again);
+    arm(*again);
+    ASSERT_TRUE(eventually([this] { return script.started() == 2; }));
+    EXPECT_EQ(script.last_program(), "G1 X5 Y5 S10 F600\n");
+    EXPECT_TRUE(runner->abort(again->id));
+    ASSERT_TRUE(reaches(*again, CutState::Aborted));
+    EXPECT_FALSE(store->cuts.may_be_finished(over));
+    EXPECT_TRUE(store->cuts.may_be_finished(store->cuts.find(again->id).value()));
+}
+
+TEST_F(DeviceRunnerTest, ACutKeepsWhatItsJournalKnowsOfTheBeam) {
+    run_until_ready();
+    const CutRecord cut = add_cut(1);
+    BeamRecord beam;
+    beam.least_mm = 1.5;
+    beam.most_mm = 2.25;
+    beam.total_mm = 100.0;
+    beam.line = 7;
+    beam.at_mm = {-3.0, 4.5};
+    beam.certain = true;
+    store->cuts.record_beam(cut.id, beam);
+    const BeamRecord kept = store->cuts.find(cut.id)->beam.value();
+    EXPECT_EQ(kept.least_mm, 1.5);
+    EXPECT_EQ(kept.most_mm, 2.25);
+    EXPECT_EQ(kept.line, 7);
+    EXPECT_EQ(kept.at_mm, beam.at_mm);
+    EXPECT_TRUE(kept.certain);
+    EXPECT_FALSE(kept.position_kept);
+}
+
 TEST_F(DeviceRunnerTest, WhatTheMachineDoesIsWhatTheCutIs) {
     run_until_ready();
     const CutRecord cut = cutting();
