@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
 #include "server/store/event_log.h"

@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
-#include <SQLiteCpp/SQLiteCpp.h>
-
 #include "server/store/records.h"
+
+namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
+class Database;
+class Statement;
+}  // namespace SQLite
 
 namespace leafcutter::server {
 
