@@ -176,7 +176,8 @@ void GrblSession::handle_message(const GrblEvent& event) {
         protocol_.set_rx_buffer_bytes(firmware_.receive_budget());
         protocol_.set_longest_line(firmware_.longest_line());
         if (firmware_.planner_blocks() > 0) {
-            status_.planner_blocks = firmware_.planner_blocks() + 1;
+            // The line being read, and one that a doubled "ok" may have counted too early.
+            status_.planner_blocks = firmware_.planner_blocks() + 2;
         }
     } else if (text.substr(0, 5) == "[MSG:" && !job_runs()) {
         status_.message = text.substr(5, text.size() - 6);

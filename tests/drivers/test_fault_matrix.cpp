@@ -134,6 +134,13 @@ private:
         } else if (act_ == Act::HoldAndResume) {
             cut_.session().hold();
             expect_dark_soon("hold");
+            // Dark it may have been on its way to the next burn, still slowing down.
+            Axes before{};
+            until([&] {
+                const bool stands = cut_.machine().position_mm() == before;
+                before = cut_.machine().position_mm();
+                return stands || !running();
+            });
             const double burnt = cut_.burnt();
             const double end = cut_.machine().now_s() + 0.5;
             until([&] { return cut_.machine().now_s() >= end || !running(); });
