@@ -132,7 +132,8 @@ Packing first_packing(const BoardPlan& plan, std::uint64_t seed, const geometry:
     std::vector<Position> positions(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
         const NestPart& part = plan.part(i);
-        positions[i].angle_deg = part.turns_freely() ? part.allowed_deg.nearest(0.0) : part.allowed_deg.front();
+        positions[i].angle_deg =
+            part.turns_freely() ? part.allowed_deg.nearest(0.0) : part.allowed_deg.front();
         positions[i].x = -1e6 * (1.0 + static_cast<double>(i));
     }
     Extent extent{1, first_width(plan)};

@@ -32,6 +32,11 @@ struct SheetStart::Rest {
 
 SheetStart::SheetStart(const SheetProblem& problem, std::uint64_t seed)
     : problem_(problem), seed_(seed) {
+    std::size_t bands = 0;
+    for (const std::size_t part : problem.part_of) {
+        bands += problem.parts[part].is_band() ? 1 : 0;
+    }
+    banded_ = 2 * bands > problem.part_of.size();
     frames_.emplace_back(problem, 0);
     frames_.emplace_back(problem, 1);
     for (const SheetKind& kind : problem.kinds) {
@@ -90,7 +95,7 @@ void SheetStart::sum_up(SheetTrial& trial) const {
     }
 }
 
-void SheetStart::lay_plain(const SheetRun& run,
+void SheetStart::lay_heaps(const SheetRun& run,
                            std::int64_t rows,
                            Rest& rest,
                            SheetTrial& trial) const {
@@ -117,6 +122,10 @@ void SheetStart::lay_plain(const SheetRun& run,
             others.push_back(items[i]);
             continue;
         }
+        if (at.bin < 0) {
+            others.push_back(items[i]);
+            continue;
+        }
         at.bin += first;
         trial.positions[items[i]] = at;
     }
@@ -124,9 +133,9 @@ void SheetStart::lay_plain(const SheetRun& run,
     rest.items = std::move(others);
 }
 
-void SheetStart::lay_irregular(std::span<const SheetRun> runs,
-                               Rest& rest,
-                               SheetTrial& trial) const {
+void SheetStart::lay_one_by_one(std::span<const SheetRun> runs,
+                                Rest& rest,
+                                SheetTrial& trial) const {
     std::vector<std::size_t> kinds;
     for (const SheetRun& run : runs) {
         const std::size_t most = std::min(kMostSheets, rest.items.size());
@@ -154,6 +163,21 @@ void SheetStart::lay_irregular(std::span<const SheetRun> runs,
     rest.items = std::move(others);
 }
 
+std::vector<SheetRun> SheetStart::unused(std::span<const SheetRun> runs,
+                                         const SheetTrial& trial) const {
+    std::vector<SheetRun> left;
+    for (SheetRun run : runs) {
+        if (run.count) {
+            *run.count -=
+                static_cast<int>(std::count(trial.kinds.begin(), trial.kinds.end(), run.kind));
+        }
+        if (run.count.value_or(1) > 0) {
+            left.push_back(run);
+        }
+    }
+    return left;
+}
+
 SheetTrial SheetStart::lay(std::span<const SheetRun> runs,
                            int quarters,
                            std::int64_t rows,
@@ -168,18 +192,19 @@ SheetTrial SheetStart::lay(std::span<const SheetRun> runs,
     std::iota(rest.items.begin(), rest.items.end(), std::size_t{0});
     for (std::size_t i = 0; i < runs.size() && !rest.items.empty();) {
         context.check();
-        if (problem_.kinds[runs[i].kind].is_plain()) {
-            lay_plain(runs[i], rows, rest, trial);
+        if (heaps_suit(problem_.kinds[runs[i].kind])) {
+            lay_heaps(runs[i], rows, rest, trial);
             ++i;
             continue;
         }
         std::size_t end = i;
-        while (end < runs.size() && !problem_.kinds[runs[end].kind].is_plain()) {
+        while (end < runs.size() && !heaps_suit(problem_.kinds[runs[end].kind])) {
             ++end;
         }
-        lay_irregular(runs.subspan(i, end - i), rest, trial);
+        lay_one_by_one(runs.subspan(i, end - i), rest, trial);
         i = end;
     }
+    lay_one_by_one(unused(runs, trial), rest, trial);
     sum_up(trial);
     return trial;
 }

@@ -257,7 +257,7 @@ TEST(NestInstanceJson, ReadsBothKindsOfProblems) {
         R"({"items": [{"id": 0, "demand": 1, "shape": {"type": "rectangle",
             "data": {"x_min": 0, "y_min": 0, "width": 2, "height": 1}}}],
             "bins": [{"id": 1, "stock": 2, "cost": 5, "shape": {"type": "polygon", "data":
-            {"outer": [[0,0],[9,0],[9,9]], "inner": [[[5,1],[6,1],[6,2]]]}}, "zones": []}]})");
+            {"outer": [[0,0],[9,0],[9,9],[0,0]], "inner": [[[5,1],[6,1],[6,2],[5,1]]]}}, "zones": []}]})");
     EXPECT_EQ(bins.bins[0].stock, 2);
     EXPECT_EQ(bins.bins[0].zones.size(), 1U);
     EXPECT_TRUE(bins.items[0].allowed_deg.empty());
