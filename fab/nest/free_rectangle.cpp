@@ -97,9 +97,9 @@ private:
             const double rise = b.y() - a.y();
             const double s = rise > 0.0 ? std::clamp((row - a.y()) / rise, 0.0, 1.0) : 0.0;
             const double t = rise > 0.0 ? std::clamp((row + 1 - a.y()) / rise, 0.0, 1.0) : 1.0;
-            const auto [x0, x1] =
-                std::minmax(a.x() + s * (b.x() - a.x()), a.x() + t * (b.x() - a.x()));
-            block_cells(row, x0, x1);
+            const double x0 = a.x() + s * (b.x() - a.x());
+            const double x1 = a.x() + t * (b.x() - a.x());
+            block_cells(row, std::min(x0, x1), std::max(x0, x1));
         }
     }
 

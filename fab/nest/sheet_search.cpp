@@ -37,7 +37,7 @@ public:
           options_(options),
           context_(context),
           accept_(accept),
-          start_(problem, options.seed) {
+          start_(problem, options) {
         for (const std::size_t part : problem.part_of) {
             area_ += problem.parts[part].area;
         }

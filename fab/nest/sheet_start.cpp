@@ -11,6 +11,7 @@ namespace leafcutter::fab {
 namespace {
 
 constexpr std::size_t kMostSheets = 10'000;
+constexpr std::int64_t kMostSamples = 1000;
 
 }  // namespace
 
@@ -30,15 +31,20 @@ struct SheetStart::Rest {
     const geometry::Context& context;
 };
 
-SheetStart::SheetStart(const SheetProblem& problem, std::uint64_t seed)
-    : problem_(problem), seed_(seed) {
+SheetStart::SheetStart(const SheetProblem& problem, const CompactionOptions& options)
+    : problem_(problem), seed_(options.seed) {
+    // Trying more places for an item than for all later on would be out of proportion.
+    const auto items = static_cast<std::int64_t>(problem.part_of.size());
+    samples_ = static_cast<int>(
+        std::clamp<std::int64_t>(options.max_evaluations / (10 * items + 1), 40, kMostSamples));
     std::size_t bands = 0;
     for (const std::size_t part : problem.part_of) {
         bands += problem.parts[part].is_band() ? 1 : 0;
     }
     banded_ = 2 * bands > problem.part_of.size();
-    frames_.emplace_back(problem, 0);
-    frames_.emplace_back(problem, 1);
+    const std::vector<std::vector<NestPart>> taken = taken_parts(problem);
+    frames_.emplace_back(problem, taken, 0);
+    frames_.emplace_back(problem, taken, 1);
     for (const SheetKind& kind : problem.kinds) {
         // A part that only just fits may not once its corners are rounded.
         const double slack = 1e-6 * std::max(kind.width, kind.height);
@@ -146,7 +152,7 @@ void SheetStart::lay_one_by_one(std::span<const SheetRun> runs,
         return;
     }
     const BoardPlan plan = frame(trial.quarters).plan(rest.items, kinds);
-    const Packing packing = first_packing(plan, seed_, rest.context);
+    const Packing packing = first_packing(plan, {seed_, samples_}, rest.context);
     trial.evaluations += static_cast<std::int64_t>(rest.items.size());
     const int first = static_cast<int>(trial.kinds.size());
     trial.kinds.insert(trial.kinds.end(), kinds.begin(), kinds.end());

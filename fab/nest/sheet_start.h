@@ -37,7 +37,8 @@ struct SheetRun {
 
 class SheetStart {
 public:
-    SheetStart(const SheetProblem& problem, std::uint64_t seed);
+    // Of the options, the seed and the work count.
+    SheetStart(const SheetProblem& problem, const CompactionOptions& options);
 
     const SheetFrame& frame(int quarters) const { return frames_[quarters != 0 ? 1 : 0]; }
 
@@ -66,6 +67,7 @@ private:
 
     const SheetProblem& problem_;
     std::uint64_t seed_;
+    int samples_ = 0;      // Of places for an item, one by one.
     bool banded_ = false;  // Most items are long bands: those stack well in heaps.
     std::vector<SheetFrame> frames_;
     std::vector<std::vector<char>> fits_;  // [kind][part]
