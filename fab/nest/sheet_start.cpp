@@ -13,6 +13,9 @@ namespace {
 constexpr std::size_t kMostSheets = 10'000;
 constexpr std::int64_t kMostSamples = 1000;
 
+// Of what a new sheet is worth for its area: a remnant that is hardly filled had better stay whole.
+constexpr double kWorthOfRemnant = 0.5;
+
 }  // namespace
 
 bool is_better(const SheetTrial& a, const SheetTrial& b) {
@@ -97,7 +100,7 @@ void SheetStart::sum_up(SheetTrial& trial) const {
         const double share = static_cast<int>(bin) == last
                                  ? trial.last_width / frame(trial.quarters).width(trial.kinds[bin])
                                  : 1.0;
-        trial.taken += kind.cost > 0.0 || last == 0 ? share * kind.area : 0.0;
+        trial.taken += share * kind.area * (kind.cost > 0.0 ? 1.0 : kWorthOfRemnant);
     }
 }
 

@@ -22,7 +22,7 @@ struct SheetTrial {
     double last_width = 0.0;          // How far the last sheet is used.
     std::size_t unplaced = 0;
     double cost = 0.0;
-    double taken = 0.0;  // Area of the sheets that cost something, the last one by its used part.
+    double taken = 0.0;  // Area of all sheets, the last one by its used part; remnants count half.
     std::int64_t evaluations = 0;
 };
 
