@@ -9,9 +9,9 @@
 #include "fab/nest/check.h"
 #include "fab/package/records.h"
 #include "server/json_reader.h"
+#include "server/outline_json.h"
 #include "server/params.h"
 #include "server/params_names.h"
-#include "server/recut_wishes.h"
 
 namespace leafcutter::server {
 
