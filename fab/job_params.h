@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "fab/material/stock.h"
+#include "fab/nest/rotations.h"
 #include "geometry/foliation.h"
 #include "geometry/quads/quad_mesh.h"
 
@@ -95,11 +97,21 @@ struct MaterialParams {
 
 enum class Rotation { Free, Half, Quarter, Fixed };  // Any; 0,180; 0,90,180,270; 0.
 
+// Rotations of some pieces: of one ("W12.1"), of a strip ("W12") or of a family ("weft").
+struct PieceTurns {
+    std::string of;
+    Rotations turns;
+};
+
 struct NestingParams {
     double time_s = 10.0;
     double spacing_mm = 1.0;
     double margin_mm = 5.0;
     Rotation rotation = Rotation::Free;
+    std::optional<Rotations> turns;       // Instead of `rotation`; relative to the grain.
+    std::vector<PieceTurns> piece_turns;  // Instead of both; a piece before its strip and family.
+    std::vector<StockItem> stock;         // Taken before new sheets where that costs less.
+    bool only_stock = false;              // No new sheets.
     std::uint32_t seed = 1;
 };
 

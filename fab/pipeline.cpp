@@ -388,6 +388,7 @@ private:
         files.push_back({"weave.json", weave_json(result_)});
         files.push_back({"layout.json", layout_json(result_)});
         files.push_back({"bill.csv", bill_csv(result_)});
+        files.push_back({"stock.json", stock_json(result_)});
         std::vector<PackageFile> models = model_files(result_);
         std::move(models.begin(), models.end(), std::back_inserter(files));
         for (std::size_t i = 0; i < result_.programs.size(); ++i) {

@@ -69,7 +69,11 @@ Layout on_remnant(const JobResult& job, const Ring& remnant, const geometry::Con
 }
 
 Layout on_sheets(const JobResult& job, const geometry::Context& context) {
-    Layout layout = nest_families(job.pieces, {job.weft, job.warp}, job.params.nesting, context);
+    // The job has cut its stock.
+    NestingParams fresh = job.params.nesting;
+    fresh.stock.clear();
+    fresh.only_stock = false;
+    Layout layout = nest_families(job.pieces, {job.weft, job.warp}, fresh, context);
     if (layout.unplaced.empty()) {
         return layout;
     }

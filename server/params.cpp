@@ -11,6 +11,7 @@
 #include "server/json_reader.h"
 #include "server/params_foliation.h"
 #include "server/params_names.h"
+#include "server/params_stock.h"
 
 namespace leafcutter::server {
 
@@ -140,7 +141,29 @@ void read_nesting(ObjectReader& reader, fab::NestingParams& nesting) {
     reader.number("time_s", nesting.time_s, {0.0, 86'400.0, true});
     reader.number("spacing_mm", nesting.spacing_mm, kLength);
     reader.number("margin_mm", nesting.margin_mm, kLength);
-    read_choice(reader, "rotation", nesting.rotation, kRotations);
+    if (const json* turns = reader.get("rotation"); turns != nullptr && turns->is_array()) {
+        nesting.turns = read_rotations(*turns, reader.path_of("rotation"));
+    } else {
+        read_choice(reader, "rotation", nesting.rotation, kRotations);
+    }
+    if (const json* rotations = reader.get("rotations")) {
+        const std::string path = reader.path_of("rotations");
+        if (!rotations->is_object()) {
+            refuse_param(path, "must be an object: {\"W12\": [[-5, 5]], \"warp\": \"0,180\"}");
+        }
+        for (const auto& [name, turns] : rotations->items()) {
+            nesting.piece_turns.push_back(
+                {name, read_rotations(turns, fmt::format("{}.{}", path, name))});
+        }
+    }
+    if (const json* stock = reader.get("stock")) {
+        nesting.stock = read_stock(*stock, reader.path_of("stock"));
+    }
+    reader.boolean("only_stock", nesting.only_stock);
+    if (nesting.only_stock && nesting.stock.empty()) {
+        refuse_param(reader.path_of("only_stock"),
+                     "needs nesting.stock: there is nothing to cut from");
+    }
     int seed = static_cast<int>(nesting.seed);
     reader.integer("seed", seed, {});
     nesting.seed = static_cast<std::uint32_t>(seed);

@@ -2,8 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fab/package/records.h"
 #include "server/params.h"
 #include "server/params_names.h"
+#include "server/params_stock.h"
 
 namespace leafcutter::server {
 
@@ -84,6 +86,19 @@ json foliation_to_json(const fab::FoliationParams& foliation) {
     return result;
 }
 
+void add_stock(const fab::NestingParams& nesting, json& result) {
+    if (nesting.turns) {
+        result["rotation"] = rotations_to_json(*nesting.turns);
+    }
+    for (const fab::PieceTurns& turns : nesting.piece_turns) {
+        result["rotations"][turns.of] = rotations_to_json(turns.turns);
+    }
+    for (const fab::StockItem& item : nesting.stock) {
+        const json record = fab::stock_record(item);
+        result["stock"].push_back(record);
+    }
+}
+
 }  // namespace
 
 json params_to_json(const fab::JobParams& params) {
@@ -120,7 +135,9 @@ json params_to_json(const fab::JobParams& params) {
                          {"spacing_mm", params.nesting.spacing_mm},
                          {"margin_mm", params.nesting.margin_mm},
                          {"rotation", name_of(kRotations, params.nesting.rotation)},
+                         {"only_stock", params.nesting.only_stock},
                          {"seed", params.nesting.seed}};
+    add_stock(params.nesting, result["nesting"]);
     result["cut"] = {
         {"lead_in_mm", params.cut.lead_in_mm},
         {"over_cut_mm", params.cut.over_cut_mm ? json(*params.cut.over_cut_mm) : json("auto")},

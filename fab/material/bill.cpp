@@ -1,6 +1,7 @@
 #include "fab/material/bill.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -38,14 +39,19 @@ void add_sheet(const Sheet& sheet,
                const PieceAreas& areas,
                BillLine& line) {
     ++line.sheets;
-    line.sheets_area_mm2 += sheet.size.width_mm * sheet.size.height_mm;
+    line.sheets_area_mm2 += sheet.outline.empty() ? sheet.size.width_mm * sheet.size.height_mm
+                                                  : std::abs(ring_area(sheet.outline));
     for (const Placement& placement : sheet.placements) {
         if (const auto area = areas.find(placement.piece); area != areas.end()) {
             ++line.pieces;
             line.strips_area_mm2 += area->second;
         }
     }
-    if (const std::optional<double> price = price_of(material, sheet.size)) {
+    // What is at hand costs what it was put down for, though it may be a size that is sold, too.
+    const std::optional<double> price = sheet.stock.empty() ? price_of(material, sheet.size)
+                                        : sheet.cost > 0.0  ? std::optional(sheet.cost)
+                                                            : std::nullopt;
+    if (price) {
         line.cost += *price;
         line.currency = material.currency;
     }

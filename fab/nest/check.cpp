@@ -38,6 +38,18 @@ Ring placed_outline(const Piece& piece, const Placement& placement) {
     return ring;
 }
 
+const char* name_of(ZoneKind kind) {
+    switch (kind) {
+        case ZoneKind::Hole:
+            return "a hole of the sheet";
+        case ZoneKind::KeepOut:
+            return "a zone to keep out of";
+        case ZoneKind::Defect:
+            break;
+    }
+    return "a defect of the sheet";
+}
+
 using PieceIndex = std::map<std::string_view, const Piece*>;
 
 // Smallest gap on a sheet, infinite for a single piece.
@@ -54,9 +66,19 @@ double check_sheet(const Sheet& sheet, const PieceIndex& index, const NestOption
         rings.push_back({fmt::format("piece {}", placement.piece),
                          to_whole(placed_outline(*piece->second, placement), unit)});
     }
-    const double margin_mm = options.margin_mm + options.kerf_mm / 2.0 - kToleranceMm;
+    const double margin_mm = edge_gap_mm(options) - kToleranceMm;
     prove_within(rings, {units(margin_mm), units(margin_mm)},
                  {units(sheet.size.width_mm - margin_mm), units(sheet.size.height_mm - margin_mm)});
+    const auto gap_units = [&](double mm) {
+        return std::max<std::int64_t>(0, units(mm - kToleranceMm));
+    };
+    if (!sheet.outline.empty()) {
+        prove_inside(rings, to_whole(sheet.outline, unit), gap_units(edge_gap_mm(options)));
+    }
+    for (const SheetZone& zone : sheet.zones) {
+        prove_clear(rings, {name_of(zone.kind), to_whole(zone.outline, unit)},
+                    gap_units(zone_gap_mm(zone.kind, options)));
+    }
     const double gap_mm = options.spacing_mm + options.kerf_mm - kToleranceMm;
     return unit * prove_apart(rings, std::max<std::int64_t>(0, units(gap_mm)));
 }
@@ -79,6 +101,22 @@ void check_each_once(const Layout& layout, const PieceIndex& index) {
 }
 
 }  // namespace
+
+double edge_gap_mm(const NestOptions& options) {
+    return options.margin_mm + options.kerf_mm / 2.0;
+}
+
+double zone_gap_mm(ZoneKind kind, const NestOptions& options) {
+    switch (kind) {
+        case ZoneKind::Hole:
+            return edge_gap_mm(options);
+        case ZoneKind::KeepOut:
+            return options.spacing_mm + options.kerf_mm;
+        case ZoneKind::Defect:
+            break;
+    }
+    return 0.0;
+}
 
 Rotations allowed_rotations(Rotation rotation) {
     switch (rotation) {

@@ -116,8 +116,9 @@ Extent extent_of_area(const BoardPlan& plan, double area) {
     return extent;
 }
 
-Packing first_packing(const BoardPlan& plan, std::uint64_t seed, const geometry::Context& context) {
-    constexpr int kSamples = 1000;
+Packing first_packing(const BoardPlan& plan,
+                      const FirstOptions& options,
+                      const geometry::Context& context) {
     std::vector<std::size_t> order(plan.part_of.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     const auto size = [&](std::size_t item) {
@@ -125,25 +126,26 @@ Packing first_packing(const BoardPlan& plan, std::uint64_t seed, const geometry:
     };
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
-    Random random(seed);
+    Random random(options.seed);
     Board board(plan);
     PoseSearch search(board, random);
     // Items not yet laid wait far outside, in nobody's way.
     std::vector<Position> positions(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
         const NestPart& part = plan.part(i);
-        positions[i].angle_deg = part.turns_freely() ? part.allowed_deg.nearest(0.0) : part.allowed_deg.front();
+        positions[i].angle_deg =
+            part.turns_freely() ? part.allowed_deg.nearest(0.0) : part.allowed_deg.front();
         positions[i].x = -1e6 * (1.0 + static_cast<double>(i));
     }
     Extent extent{1, first_width(plan)};
     board.restore(positions, extent);
     for (const std::size_t item : order) {
         context.check();
-        Candidate found = search.leftmost(item, kSamples);
+        Candidate found = search.leftmost(item, options.samples);
         while (found.loss > 0.0F && widen(plan, extent)) {
             positions = board.positions();
             board.restore(positions, extent);
-            found = search.leftmost(item, kSamples);
+            found = search.leftmost(item, options.samples);
         }
         if (found.loss <= 0.0F) {
             board.move(item, found.position);

@@ -32,9 +32,16 @@ struct CompactionOptions {
     double time_s = 0.0;                       // By the context's clock; 0: no limit.
 };
 
+struct FirstOptions {
+    std::uint64_t seed = 1;
+    int samples = 1000;  // Places tried for each item.
+};
+
 // Lays every item somewhere without overlap, largest first; opens sheets as needed. Items for which
 // no room was found have bin -1.
-Packing first_packing(const BoardPlan& plan, std::uint64_t seed, const geometry::Context& context);
+Packing first_packing(const BoardPlan& plan,
+                      const FirstOptions& options,
+                      const geometry::Context& context);
 
 // The smallest packing found from `start` on. `accept` decides on each improvement before it
 // counts (from the calling thread): the caller's proof. A stop request ends the search early.

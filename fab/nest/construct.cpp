@@ -34,6 +34,7 @@ struct OpenSheet {
     double top_mm = 0.0;
     int failures_in_a_row = 0;
     double hopeless_diameter_mm = 0.0;  // Not asked again for anything as long as this.
+    std::size_t laid = 0;
 };
 
 struct Spot {
@@ -82,16 +83,24 @@ private:
                 settle_down(sheets_[sheet], *spot, {index, sheet, {}}, shape);
                 return;
             }
-            if (sheet + 1 == sheets_.size() && sheets_[sheet].outlines.size() == 0) {
-                throw geometry::Error(geometry::ErrorKind::SelfCheck, "nest-no-room",
-                                      "nest: a piece found no room on an empty sheet");
+            if (sheet + 1 < sheets_.size() || sheets_[sheet].laid > 0) {
+                continue;
             }
+            sheets_.pop_back();
+            heap_.left_over.push_back(index);
+            return;
         }
     }
 
     void open_sheet() {
         sheets_.push_back({SheetRaster(options_.extent, options_.cell_mm),
-                           PlacedOutlines(options_.extent), 0.0, 0, 2.0 * options_.extent.norm()});
+                           PlacedOutlines(options_.extent), 0.0, 0, 2.0 * options_.extent.norm(),
+                           0});
+        OpenSheet& sheet = sheets_.back();
+        for (const Ring& ring : options_.taken) {
+            sheet.raster.block(ring, kRasterSlack * options_.cell_mm);
+            sheet.outlines.add(ring);
+        }
     }
 
     static void note_outcome(OpenSheet& sheet, const NestShape& shape, bool found) {
@@ -134,7 +143,7 @@ private:
         if (!shape.allowed_deg.empty()) {
             return best;
         }
-        if (!best && sheet.outlines.size() == 0) {
+        if (!best && sheet.laid == 0) {
             // A long piece may fit slanted only.
             if (const auto angle = fitting_angle(shape, options_.extent, {})) {
                 try_angle(sheet, shape, *angle, best);
@@ -287,6 +296,7 @@ private:
         sheet.raster.block(spot.ring, options_.gap_mm + kRasterSlack * options_.cell_mm);
         sheet.outlines.add(spot.ring);
         sheet.top_mm = std::max(sheet.top_mm, spot.corner.y() + box.size().y());
+        ++sheet.laid;
         heap_.laid.push_back(laid);
     }
 

@@ -19,8 +19,9 @@ namespace leafcutter::fab {
 struct HeapOptions {
     Eigen::Vector2d extent = Eigen::Vector2d::Zero();
     double gap_mm = 0.0;
-    double cell_mm = 1.0;     // Of the search raster; results are exact all the same.
-    double top_weight = 0.0;  // 0: lowest centre of gravity; 1: lowest top.
+    double cell_mm = 1.0;          // Of the search raster; results are exact all the same.
+    double top_weight = 0.0;       // 0: lowest centre of gravity; 1: lowest top.
+    std::vector<Ring> taken = {};  // Parts of each sheet that nothing may lie on.
 };
 
 struct Laid {
@@ -31,6 +32,7 @@ struct Laid {
 
 struct Heap {
     std::vector<Laid> laid;
+    std::vector<std::size_t> left_over;  // Found no room on an empty sheet.
     std::size_t sheets = 0;
     double last_top_mm = 0.0;      // How far up the last sheet is used.
     std::int64_t evaluations = 0;  // Rows of positions tried.
@@ -41,8 +43,8 @@ struct Heap {
     }
 };
 
-// Lays shapes[order[0]], shapes[order[1]], … each on the first sheet that has room. Every shape
-// must fit an empty sheet. Throws Cancelled after a stop request.
+// Lays shapes[order[0]], shapes[order[1]], … each on the first sheet that has room. Throws
+// Cancelled after a stop request.
 Heap build_heap(std::span<const NestShape> shapes,
                 std::span<const std::size_t> order,
                 const HeapOptions& options,

@@ -235,27 +235,27 @@ void prove_within(std::span<const PlacedRing> rings, WholePoint low, WholePoint 
     }
 }
 
-void prove_clear(std::span<const PlacedRing> rings, const PlacedRing& obstacle) {
+void prove_clear(std::span<const PlacedRing> rings, const PlacedRing& obstacle, std::int64_t gap) {
     const Prepared fixed{box_of(obstacle.ring), edges_of(obstacle.ring)};
     for (const PlacedRing& placed : rings) {
         const Prepared part{box_of(placed.ring), edges_of(placed.ring)};
         bool broken = false;
-        least_square(part, fixed, 0, 0, broken);
+        least_square(part, fixed, gap, gap, broken);
         if (broken || holds(obstacle.ring, placed.ring.front()) ||
             holds(placed.ring, obstacle.ring.front())) {
-            fail(fmt::format("{} overlaps {}", placed.name, obstacle.name));
+            fail(fmt::format("{} overlaps {} or is too near", placed.name, obstacle.name));
         }
     }
 }
 
-void prove_inside(std::span<const PlacedRing> rings, const WholeRing& outline) {
+void prove_inside(std::span<const PlacedRing> rings, const WholeRing& outline, std::int64_t gap) {
     const Prepared frame{box_of(outline), edges_of(outline)};
     for (const PlacedRing& placed : rings) {
         const Prepared part{box_of(placed.ring), edges_of(placed.ring)};
         bool broken = false;
-        least_square(part, frame, 0, 0, broken);
+        least_square(part, frame, gap, gap, broken);
         if (broken || !holds(outline, placed.ring.front())) {
-            fail(fmt::format("{} leaves its sheet", placed.name));
+            fail(fmt::format("{} leaves its sheet or its margin", placed.name));
         }
     }
 }

@@ -38,10 +38,16 @@ double prove_apart(std::span<const PlacedRing> rings, std::int64_t gap);
 // Throws Error(SelfCheck) if a corner lies outside of [low, high].
 void prove_within(std::span<const PlacedRing> rings, WholePoint low, WholePoint high);
 
-// Throws Error(SelfCheck) if a ring is not inside of `outline` or touches it.
-void prove_inside(std::span<const PlacedRing> rings, const WholeRing& outline);
+// Throws Error(SelfCheck) if a ring is not inside of `outline`, touches it or comes nearer to it
+// than `gap` units.
+void prove_inside(std::span<const PlacedRing> rings,
+                  const WholeRing& outline,
+                  std::int64_t gap = 0);
 
-// Throws Error(SelfCheck) if a ring overlaps or touches the obstacle, or one lies in the other.
-void prove_clear(std::span<const PlacedRing> rings, const PlacedRing& obstacle);
+// Throws Error(SelfCheck) if a ring overlaps or touches the obstacle, one lies in the other, or it
+// is nearer than `gap` units.
+void prove_clear(std::span<const PlacedRing> rings,
+                 const PlacedRing& obstacle,
+                 std::int64_t gap = 0);
 
 }  // namespace leafcutter::fab

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,6 +15,7 @@
 #include "fab/material/totals.h"
 #include "fab/nest/check.h"
 #include "fab/nest/nest.h"
+#include "fab/nest/offcut.h"
 #include "geometry/error.h"
 
 namespace leafcutter::fab {
@@ -30,15 +34,38 @@ struct Batch {
     std::vector<const Piece*> pieces;
 };
 
+const char* name_of(Family family) {
+    return family == Family::Weft ? "weft" : "warp";
+}
+
+// What was said of the piece itself, else of its strip, else of its family.
+const PieceTurns* turns_of(const Piece& piece, const std::vector<PieceTurns>& wanted) {
+    for (const std::string_view name : {std::string_view(piece.id), std::string_view(piece.strip),
+                                        std::string_view(name_of(piece.family))}) {
+        for (const PieceTurns& turns : wanted) {
+            if (turns.of == name) {
+                return &turns;
+            }
+        }
+    }
+    return nullptr;
+}
+
 NestOptions nest_options(const NestingParams& params, const Batch& batch, double share) {
     NestOptions options;
     options.spacing_mm = params.spacing_mm;
     options.margin_mm = params.margin_mm;
     options.kerf_mm = batch.material.kerf_mm;
-    options.turns = turns_on(batch.material, params.rotation);
+    options.turns = turns_on(batch.material, params);
     options.seed = params.seed;
     options.max_evaluations = tries_in(params.time_s * share, batch.pieces);
     options.time_s = kSlowestFactor * params.time_s * share;
+    for (const Piece* piece : batch.pieces) {
+        if (const PieceTurns* own = turns_of(*piece, params.piece_turns)) {
+            options.piece_turns[piece->id] =
+                own->turns.shifted(batch.material.grain_deg.value_or(0.0));
+        }
+    }
     return options;
 }
 
@@ -51,19 +78,19 @@ double area(const SheetSize& size) {
 }
 
 // Those that margins leave something of: one at least, else Error(BadOption).
-std::vector<SheetSize> usable_sizes(const Material& material, const NestingParams& params) {
+std::vector<StockSheet> usable_sheets(const Material& material, const NestingParams& params) {
     if (material.sheets.empty()) {
         throw geometry::Error(geometry::ErrorKind::BadOption, "no-sheet",
                               fmt::format("material {}: has no sheets", material.id));
     }
-    std::vector<SheetSize> sizes;
+    std::vector<StockSheet> sheets;
     const double edge = edges(material, params);
     for (const StockSheet& sheet : material.sheets) {
         if (sheet.size.width_mm > edge && sheet.size.height_mm > edge) {
-            sizes.push_back(sheet.size);
+            sheets.push_back(sheet);
         }
     }
-    if (sizes.empty()) {
+    if (sheets.empty()) {
         const SheetSize& sheet = material.sheets.front().size;
         throw geometry::Error(
             geometry::ErrorKind::BadOption, "sheet-too-small",
@@ -71,54 +98,67 @@ std::vector<SheetSize> usable_sizes(const Material& material, const NestingParam
                 "nesting.margin_mm: a sheet of {:g} x {:g} mm is no larger than its margins",
                 sheet.width_mm, sheet.height_mm));
     }
-    return sizes;
+    return sheets;
 }
 
-// What a sheet counts when sizes are compared: its price if all have one, else its area.
-double worth(const Material& material, const SheetSize& size) {
-    const bool priced =
-        std::all_of(material.sheets.begin(), material.sheets.end(),
-                    [](const StockSheet& sheet) { return sheet.price.has_value(); });
-    for (const StockSheet& sheet : material.sheets) {
-        if (priced && sheet.size.width_mm == size.width_mm &&
-            sheet.size.height_mm == size.height_mm) {
-            return *sheet.price;
-        }
+// New sheets cost their price if all sizes have one, else their area; the size preferred comes
+// first and wins where another one is not clearly better.
+std::vector<StockItem> new_sheets(const Material& material, const NestingParams& params) {
+    constexpr double kNotPreferred = 1.05;
+    const std::vector<StockSheet> sheets = usable_sheets(material, params);
+    const bool priced = std::all_of(sheets.begin(), sheets.end(), [](const StockSheet& sheet) {
+        return sheet.price.value_or(0.0) > 0.0;
+    });
+    std::vector<StockItem> items;
+    for (const StockSheet& sheet : sheets) {
+        StockItem item;
+        item.size = sheet.size;
+        item.quantity.reset();
+        item.cost =
+            priced ? *sheet.price : area(sheet.size) * (items.empty() ? 1.0 : kNotPreferred);
+        items.push_back(std::move(item));
     }
-    return area(size);
+    return items;
 }
 
-// A short search on each size tells which one the whole search is worth.
-Layout nest_on_best_size(const Batch& batch,
-                         const NestingParams& params,
-                         const NestOptions& options,
-                         const geometry::Context& context) {
-    constexpr std::int64_t kShortShare = 8;
-    constexpr double kClearlyLess = 0.95;
-    const std::vector<SheetSize> sizes = usable_sizes(batch.material, params);
-    const SheetSize* best = &sizes.front();
-    std::size_t least_unplaced = 0;
-    double least_worth = 0.0;
-    geometry::Context quiet = context;
-    quiet.progress = {};
-    NestOptions brief = options;
-    brief.max_evaluations = std::max<std::int64_t>(1, options.max_evaluations / kShortShare);
-    brief.time_s = options.time_s / static_cast<double>(kShortShare);
-    for (std::size_t i = 0; i < sizes.size() && sizes.size() > 1; ++i) {
-        const Layout layout = nest(batch.pieces, sizes[i], brief, quiet);
-        context.check();
-        const double taken =
-            static_cast<double>(layout.sheets.size()) * worth(batch.material, sizes[i]);
-        const std::size_t unplaced = layout.unplaced.size();
-        const bool better = unplaced < least_unplaced ||
-                            (unplaced == least_unplaced && taken < kClearlyLess * least_worth);
-        if (i == 0 || better) {
-            best = &sizes[i];
-            least_unplaced = unplaced;
-            least_worth = taken;
+// What may be nested on: first what is left of the stock, then new sheets.
+std::vector<StockItem> sheets_for(const Material& material,
+                                  const NestingParams& params,
+                                  const std::vector<StockItem>& stock) {
+    std::vector<StockItem> sheets;
+    for (const StockItem& item : stock) {
+        const bool fits = item.material.empty() || item.material == material.id;
+        if (fits && item.quantity.value_or(1) > 0) {
+            sheets.push_back(item);
         }
     }
-    return nest(batch.pieces, *best, options, context);
+    if (!params.only_stock) {
+        std::vector<StockItem> fresh = new_sheets(material, params);
+        std::move(fresh.begin(), fresh.end(), std::back_inserter(sheets));
+    }
+    return sheets;
+}
+
+void take_from(std::vector<StockItem>& stock, const Layout& layout) {
+    for (const Sheet& sheet : layout.sheets) {
+        for (StockItem& item : stock) {
+            if (!sheet.stock.empty() && item.id == sheet.stock && item.quantity) {
+                --*item.quantity;
+            }
+        }
+    }
+}
+
+void check_stock(const std::vector<StockItem>& stock) {
+    std::set<std::string_view> ids;
+    for (const StockItem& item : stock) {
+        if (item.id.empty() || !ids.insert(item.id).second) {
+            throw geometry::Error(
+                geometry::ErrorKind::BadOption, "bad-stock",
+                fmt::format("nesting.stock: each sheet needs an id of its own; {} is there twice",
+                            item.id.empty() ? "an empty one" : item.id));
+        }
+    }
 }
 
 double density_percent(const Layout& layout, std::span<const Piece> pieces) {
@@ -129,7 +169,7 @@ double density_percent(const Layout& layout, std::span<const Piece> pieces) {
     double used = 0.0;
     double whole = 0.0;
     for (const Sheet& sheet : layout.sheets) {
-        whole += sheet.size.width_mm * sheet.size.height_mm;
+        whole += sheet_area_mm2(sheet);
         for (const Placement& placement : sheet.placements) {
             used += areas[placement.piece];
         }
@@ -142,6 +182,9 @@ void append(Layout& whole, Layout part, const Batch& batch) {
         sheet.id = static_cast<int>(whole.sheets.size()) + 1;
         sheet.material = batch.material.id;
         sheet.family = batch.family;
+        if (sheet.offcut) {
+            sheet.offcut->id = fmt::format("offcut-{:03}", sheet.id);
+        }
         whole.sheets.push_back(std::move(sheet));
     }
     whole.unplaced.insert(whole.unplaced.end(), part.unplaced.begin(), part.unplaced.end());
@@ -156,12 +199,22 @@ void append(Layout& whole, Layout part, const Batch& batch) {
 }  // namespace
 
 PieceRoom piece_room(const Material& material, const NestingParams& params) {
-    const std::vector<SheetSize> sizes = usable_sizes(material, params);
     const double edge = edges(material, params);
-    const SheetSize& sheet =
-        *std::max_element(sizes.begin(), sizes.end(),
-                          [](const SheetSize& a, const SheetSize& b) { return area(a) < area(b); });
-    PieceRoom room{{sheet.width_mm - edge, sheet.height_mm - edge}, params.rotation};
+    SheetSize largest;
+    for (const StockItem& sheet : sheets_for(material, params, params.stock)) {
+        const SheetSize size = sheet.outline.empty() && sheet.zones.empty()
+                                   ? sheet.size
+                                   : largest_rectangle(sheet).size;
+        largest = area(size) > area(largest) ? size : largest;
+    }
+    if (!(largest.width_mm > edge) || !(largest.height_mm > edge)) {
+        throw geometry::Error(
+            geometry::ErrorKind::BadOption, "no-sheet",
+            fmt::format("nesting.stock: no sheet of {} leaves room within its margins; add one or "
+                        "let new sheets be taken (nesting.only_stock)",
+                        material.id));
+    }
+    PieceRoom room{{largest.width_mm - edge, largest.height_mm - edge}, params.rotation};
     if (material.grain_deg) {
         room.rotation = params.rotation == Rotation::Fixed ? Rotation::Fixed : Rotation::Half;
         if (*material.grain_deg > 45.0) {
@@ -171,10 +224,14 @@ PieceRoom piece_room(const Material& material, const NestingParams& params) {
     return room;
 }
 
-Rotations turns_on(const Material& material, Rotation rotation) {
-    if (!material.grain_deg) {
-        return allowed_rotations(rotation);
+Rotations turns_on(const Material& material, const NestingParams& params) {
+    if (params.turns) {
+        return params.turns->shifted(material.grain_deg.value_or(0.0));
     }
+    if (!material.grain_deg) {
+        return allowed_rotations(params.rotation);
+    }
+    const Rotation rotation = params.rotation;
     const bool exact = rotation == Rotation::Fixed || rotation == Rotation::Half;
     const double tolerance = exact ? 0.0 : material.grain_tolerance_deg;
     std::vector<AngleInterval> turns;
@@ -210,6 +267,8 @@ Layout nest_families(std::span<const Piece> pieces,
     for (const Piece& piece : pieces) {
         batches[shared || piece.family == Family::Weft ? 0 : 1].pieces.push_back(&piece);
     }
+    check_stock(params.stock);
+    std::vector<StockItem> stock = params.stock;
     Layout whole;
     double done = 0.0;
     for (const Batch& batch : batches) {
@@ -223,7 +282,11 @@ Layout nest_families(std::span<const Piece> pieces,
         part.progress = [&](std::string_view stage, double fraction) {
             context.report(stage, done + share * fraction);
         };
-        append(whole, nest_on_best_size(batch, params, options, part), batch);
+        const std::vector<StockItem> sheets = sheets_for(batch.material, params, stock);
+        Layout layout = nest(batch.pieces, sheets, options, part);
+        add_offcuts(layout, batch.pieces, batch.material.kerf_mm);
+        take_from(stock, layout);
+        append(whole, std::move(layout), batch);
         done += share;
         context.check();  // A stopped search returns its best so far; here a stop is a stop.
     }

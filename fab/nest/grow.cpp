@@ -63,13 +63,19 @@ Ring grown(const Ring& ring, double by) {
     return largest == paths.end() ? to_ring(path, unit) : to_ring(*largest, unit);
 }
 
-std::vector<Ring> outside_of(const Ring& ring,
+std::vector<Ring> outside_of(std::span<const Ring> rings,
                              const Eigen::Vector2d& low,
                              const Eigen::Vector2d& high,
                              int cells) {
-    const double unit =
-        unit_of(std::max({extent_of(ring), low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()}));
-    const ClipperLib::Path inner = to_path(ring, unit);
+    double extent = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+    for (const Ring& ring : rings) {
+        extent = std::max(extent, extent_of(ring));
+    }
+    const double unit = unit_of(extent);
+    ClipperLib::Paths inner;
+    for (const Ring& ring : rings) {
+        inner.push_back(to_path(ring, unit));
+    }
     const Eigen::Vector2d step = (high - low) / cells;
     std::vector<Ring> out;
     for (int row = 0; row < cells; ++row) {
@@ -79,9 +85,10 @@ std::vector<Ring> outside_of(const Ring& ring,
             ClipperLib::Clipper clipper;
             clipper.AddPath(to_path({a, {b.x(), a.y()}, b, {a.x(), b.y()}}, unit),
                             ClipperLib::ptSubject, true);
-            clipper.AddPath(inner, ClipperLib::ptClip, true);
+            clipper.AddPaths(inner, ClipperLib::ptClip, true);
             ClipperLib::Paths paths;
-            clipper.Execute(ClipperLib::ctDifference, paths);
+            clipper.Execute(ClipperLib::ctDifference, paths, ClipperLib::pftNonZero,
+                            ClipperLib::pftNonZero);
             for (const ClipperLib::Path& path : paths) {
                 if (ClipperLib::Orientation(path) && ClipperLib::Area(path) > 4.0) {
                     out.push_back(to_ring(path, unit));

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "fab/strips/strip.h"
@@ -12,9 +13,9 @@ namespace leafcutter::fab {
 // `by` >= 0.
 Ring grown(const Ring& ring, double by);
 
-// The part of the box [low, high] that is outside of `ring`, cut into simple rings by a grid of
-// `cells` x `cells`.
-std::vector<Ring> outside_of(const Ring& ring,
+// The part of the box [low, high] that is outside of all `rings`, cut into simple rings by a grid
+// of `cells` x `cells`.
+std::vector<Ring> outside_of(std::span<const Ring> rings,
                              const Eigen::Vector2d& low,
                              const Eigen::Vector2d& high,
                              int cells);

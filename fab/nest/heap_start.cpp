@@ -45,6 +45,16 @@ double raster_cell(const std::vector<NestShape>& shapes, const Eigen::Vector2d& 
     return std::max(extent.maxCoeff() / 2000.0, *quarter / 8.0);
 }
 
+// As the heap sees it: the plan's y axis reversed is its x axis.
+Ring outline_of(const TurnedPart& shape, double height) {
+    Ring ring;
+    for (std::size_t i = 0; i < shape.edges; ++i) {
+        ring.emplace_back(height - static_cast<double>(shape.y0[i]),
+                          static_cast<double>(shape.x0[i]));
+    }
+    return ring;
+}
+
 class HeapSearch {
 public:
     HeapSearch(const BoardPlan& plan, std::uint64_t seed, const geometry::Context& context)
@@ -58,6 +68,9 @@ public:
         const BoardPlan::Room& room = plan.rooms.front();
         options_.extent = {room.height, room.width};
         options_.cell_mm = raster_cell(shapes_, options_.extent);
+        for (const BoardPlan::Fixed& fixed : plan.fixed) {
+            options_.taken.push_back(outline_of(fixed.shape, room.height));
+        }
     }
 
     void run(std::int64_t rows) {
@@ -69,7 +82,7 @@ public:
                             ? Recipe{longest_first(shapes_), kTopWeights[round]}
                             : varied());
             } catch (const geometry::Cancelled&) {
-                if (best_.laid.empty()) {
+                if (best_.laid.empty() && best_.left_over.empty()) {
                     throw;
                 }
                 return;  // The best so far is a whole layout.
@@ -79,7 +92,10 @@ public:
 
     Packing packing(const BoardPlan& plan) const {
         Packing out;
-        out.positions.resize(best_.laid.size());
+        out.positions.resize(shapes_.size());
+        for (const std::size_t shape : best_.left_over) {
+            out.positions[shape].bin = -1;
+        }
         out.extent.bins = static_cast<int>(best_.sheets);
         double right = 0.0;
         for (const Laid& laid : best_.laid) {
@@ -132,7 +148,9 @@ private:
         options_.top_weight = recipe.top_weight;
         Heap heap = build_heap(shapes_, recipe.order, options_, context_);
         rows_ += std::max<std::int64_t>(1, heap.evaluations);
-        const double used = heap.sheets_used(options_.extent.y());
+        // What is left over counts as a sheet each.
+        const double used =
+            heap.sheets_used(options_.extent.y()) + static_cast<double>(heap.left_over.size());
         // An equal one is taken too: a walk over a plateau may find its way down.
         if (used <= best_used_) {
             best_ = std::move(heap);

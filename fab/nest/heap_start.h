@@ -13,9 +13,10 @@ struct HeapStart {
     std::int64_t rows = 0;  // Of positions tried.
 };
 
-// Heaps in different orders, gravity towards the left edge of the sheets, which are all alike and
-// hold no fixed things; the one that takes least. Every part must fit an empty sheet. At least one
-// heap is built, more while `rows` last. Throws Cancelled if stopped before there is one.
+// Heaps in different orders, gravity towards the left edge of the sheets, which are all alike; what
+// is fixed is so on each of them. The one that takes least. Parts that find no room on an empty
+// sheet have bin -1. At least one heap is built, more while `rows` last. Throws Cancelled if
+// stopped before there is one.
 HeapStart heap_start(const BoardPlan& plan,
                      std::int64_t rows,
                      std::uint64_t seed,

@@ -222,7 +222,7 @@ InstanceSolution solve(const NestInstance& instance,
     Problem problem = make_problem(instance);
     const bool banded = is_banded(problem.plan) && all_fit(problem.plan);
     Packing packing = banded ? banded_layout(problem.plan, options, context)
-                             : first_packing(problem.plan, options.seed, context);
+                             : first_packing(problem.plan, {.seed = options.seed}, context);
     InstanceSolution none;
     leave_out_unplaced(problem, packing, none);
     if (packing.positions.empty()) {

@@ -38,8 +38,8 @@ SheetKind kind_of(const InstanceBin& bin) {
     kind.quantity = bin.stock;
     kind.cost = bin.cost;
     kind.area = bin_area(bin);
-    for (Ring& ring :
-         outside_of(shifted(bin.outline, -box.low), Eigen::Vector2d::Zero(), size, kFrameCells)) {
+    const Ring outline = shifted(bin.outline, -box.low);
+    for (Ring& ring : outside_of({&outline, 1}, Eigen::Vector2d::Zero(), size, kFrameCells)) {
         kind.fixed.push_back({std::move(ring), 0, true});
     }
     for (const InstanceZone& zone : bin.zones) {

@@ -33,7 +33,7 @@ const json& member(const json& object, const char* key, const std::string& where
 
 double number(const json& value, const std::string& where) {
     if (!value.is_number() || !std::isfinite(value.get<double>())) {
-        refuse(fmt::format("{}: must be a number", where));
+        refuse(fmt::format("{}: must be a finite number", where));
     }
     return value.get<double>();
 }
@@ -66,29 +66,49 @@ Ring ring_of(const json& points, const std::string& where) {
     return ring;
 }
 
+// The corners of a closed ring; its first point comes again at its end.
+Ring closed_ring_of(const json& points, const std::string& where) {
+    Ring ring = ring_of(points, where);
+    const bool closed = points.size() > 1 && points.front() == points.back();
+    if (!closed) {
+        refuse(fmt::format("{}: the outline is open: its last point must be its first one again",
+                           where));
+    }
+    return ring;
+}
+
 // The outline of a shape; inner rings go to `holes`.
 Ring shape_of(const json& shape, const std::string& where, std::vector<Ring>* holes) {
     const json& type = member(shape, "type", where);
     const json& content = member(shape, "data", where);
     if (type == "simple_polygon") {
-        return ring_of(content, where);
+        return closed_ring_of(content, where);
     }
     if (type == "rectangle") {
         const double x = number(member(content, "x_min", where), where);
         const double y = number(member(content, "y_min", where), where);
         const double w = number(member(content, "width", where), where);
         const double h = number(member(content, "height", where), where);
+        if (!(w > 0.0) || !(h > 0.0)) {
+            refuse(fmt::format("{}: width and height must be above 0", where));
+        }
         return {{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}};
     }
     if (type == "polygon") {
-        if (content.contains("inner") && holes != nullptr) {
-            for (const json& inner : content.at("inner")) {
-                holes->push_back(ring_of(inner, where));
+        Ring outer = closed_ring_of(member(content, "outer", where), where);
+        if (content.contains("inner")) {
+            const json& inner = content.at("inner");
+            if (!inner.is_array()) {
+                refuse(fmt::format("{}: \"inner\" must be a list of rings", where));
+            }
+            for (std::size_t i = 0; i < inner.size() && holes != nullptr; ++i) {
+                holes->push_back(
+                    closed_ring_of(inner[i], fmt::format("{}: hole {}", where, i + 1)));
             }
         }
-        return ring_of(member(content, "outer", where), where);
+        return outer;
     }
-    refuse(fmt::format("{}: shapes of this type are not supported", where));
+    refuse(fmt::format("{}: the type must be simple_polygon, polygon or rectangle", where));
 }
 
 // Angles and intervals [from, to]; none: as drawn.
@@ -111,9 +131,10 @@ Rotations rotations_of(const json& list, const std::string& where) {
 }
 
 InstanceItem item_of(const json& entry, std::size_t index) {
-    const std::string where = fmt::format("items[{}]", index);
+    std::string where = fmt::format("items[{}]", index);
     InstanceItem item;
     item.id = whole(member(entry, "id", where), where + ".id", 0, 1 << 30);
+    where = fmt::format("item {}", item.id);
     item.demand = whole(member(entry, "demand", where), where + ".demand", 0, 1'000'000);
     item.outline = shape_of(member(entry, "shape", where), where + ".shape", nullptr);
     if (entry.contains("allowed_orientations") && !entry.at("allowed_orientations").is_null()) {
@@ -127,9 +148,10 @@ InstanceItem item_of(const json& entry, std::size_t index) {
 }
 
 InstanceBin bin_of(const json& entry, std::size_t index) {
-    const std::string where = fmt::format("bins[{}]", index);
+    std::string where = fmt::format("bins[{}]", index);
     InstanceBin bin;
     bin.id = whole(member(entry, "id", where), where + ".id", 0, 1 << 30);
+    where = fmt::format("bin {}", bin.id);
     bin.stock =
         entry.contains("stock") ? whole(entry.at("stock"), where + ".stock", 0, 100'000) : 1;
     bin.cost = entry.contains("cost") ? number(entry.at("cost"), where + ".cost") : 1.0;
@@ -139,10 +161,14 @@ InstanceBin bin_of(const json& entry, std::size_t index) {
         bin.zones.push_back({0, std::move(hole)});
     }
     if (entry.contains("zones")) {
-        for (const json& zone : entry.at("zones")) {
-            bin.zones.push_back(
-                {whole(member(zone, "quality", where), where + ".zones", 0, 1000),
-                 shape_of(member(zone, "shape", where), where + ".zones", nullptr)});
+        const json& zones = entry.at("zones");
+        if (!zones.is_array()) {
+            refuse(fmt::format("{}.zones: must be a list", where));
+        }
+        for (std::size_t i = 0; i < zones.size(); ++i) {
+            const std::string zone = fmt::format("{}.zones[{}]", where, i);
+            bin.zones.push_back({whole(member(zones[i], "quality", zone), zone, 0, 1000),
+                                 shape_of(member(zones[i], "shape", zone), zone, nullptr)});
         }
     }
     return bin;

@@ -1,42 +1,25 @@
-// Heaps give a first layout; overlap minimisation empties the last sheet from one side, then the
-// next. Every layout that counts is proven.
+// Pieces and sheets made ready for the search (sheet_search.h), and its layouts proven.
 
 #include "fab/nest/nest.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "fab/material/totals.h"
 #include "fab/nest/check.h"
-#include "fab/nest/compaction.h"
-#include "fab/nest/heap_start.h"
-#include "fab/nest/shape.h"
+#include "fab/nest/sheet_kind.h"
+#include "fab/nest/sheet_search.h"
 #include "fab/nest/simple_ring.h"
 #include "geometry/error.h"
 
 namespace leafcutter::fab {
 
 namespace {
-
-// Kept above the wanted gap: numbers are rounded on their way into files.
-constexpr double kGapGuardMm = 2e-4;
-
-constexpr double kHeapShare = 0.15;  // Of the work, for the first layout.
-
-Eigen::Vector2d usable_extent(const SheetSize& size, const NestOptions& options) {
-    const double edge = 2.0 * options.margin_mm + options.kerf_mm;
-    Eigen::Vector2d extent(size.width_mm - edge, size.height_mm - edge);
-    if (!(extent.minCoeff() > 0.0)) {
-        throw geometry::Error(
-            geometry::ErrorKind::BadOption, "sheet-too-small",
-            fmt::format("nesting.margin_mm: a sheet of {} x {} mm is no larger than its margins",
-                        size.width_mm, size.height_mm));
-    }
-    return extent;
-}
 
 void check_options(const NestOptions& options) {
     const auto refuse = [](const char* path) {
@@ -54,57 +37,61 @@ void check_options(const NestOptions& options) {
     }
 }
 
-// The sheet as the search sees it: turned so that it empties from the right.
-struct Frame {
-    int quarters = 0;  // From the search's frame to the sheet's, counter-clockwise.
-    Eigen::Vector2d extent = Eigen::Vector2d::Zero();  // In the search's frame.
-    BoardPlan plan;
-};
+void check_pieces(std::span<const Piece* const> pieces) {
+    const auto refuse = [](const Piece& piece, const std::string& fault) {
+        throw geometry::Error(geometry::ErrorKind::BadOption, "bad-piece",
+                              fmt::format("piece {}: {}", piece.id, fault));
+    };
+    std::set<std::string_view> ids;
+    for (const Piece* piece : pieces) {
+        if (const std::string fault = ring_fault(piece->outline); !fault.empty()) {
+            refuse(*piece, fault);
+        }
+        if (!ids.insert(piece->id).second) {
+            refuse(*piece, "this id is there twice");
+        }
+    }
+}
 
 class Nesting {
 public:
     Nesting(std::span<const Piece* const> pieces,
-            const SheetSize& size,
-            const NestOptions& options,
-            const geometry::Context& context)
-        : all_(pieces), size_(size), options_(options), context_(context) {
+            std::span<const StockItem> stock,
+            const NestOptions& options)
+        : pieces_(pieces), stock_(stock), options_(options) {
         check_options(options);
-        extent_ = usable_extent(size, options);
-        grow_ = (options.spacing_mm + options.kerf_mm) / 2.0 + kGapGuardMm;
+        check_pieces(pieces);
+        growth_ = growth_of(options);
+        for (const StockItem& sheet : stock) {
+            problem_.kinds.push_back(sheet_kind(sheet, options));
+        }
         for (const Piece* piece : pieces) {
-            if (const std::string fault = ring_fault(piece->outline); !fault.empty()) {
-                throw geometry::Error(geometry::ErrorKind::BadOption, "bad-piece",
-                                      fmt::format("piece {}: {}", piece->id, fault));
-            }
-            // By as much as rounding may cost, a piece that only just fits doesn't.
-            const Eigen::Vector2d room = extent_.array() - 4.0 * kGapGuardMm;
-            if (fitting_angle(make_shape(piece->outline), room,
-                              allowed_rotations(options, *piece))) {
-                fitting_.push_back(piece);
-            } else {
-                unplaced_.push_back(piece->id);
-            }
+            problem_.part_of.push_back(problem_.parts.size());
+            problem_.parts.push_back(
+                make_part(piece->outline, growth_.grow_mm, allowed_rotations(options, *piece)));
         }
     }
 
-    Layout run() {
-        if (fitting_.empty()) {
-            Layout layout;
-            layout.unplaced = unplaced_;
-            return layout;
+    Layout run(const geometry::Context& context) {
+        Layout best;
+        if (pieces_.empty() || problem_.kinds.empty()) {
+            for (const Piece* piece : pieces_) {
+                best.unplaced.push_back(piece->id);
+            }
+            return best;
         }
-        auto [frame, start] = first_layout();
-        Layout best = proven(layout_of(frame, start.packing));
         CompactionOptions search;
         search.seed = options_.seed;
         // A few pieces are soon laid as well as can be.
         constexpr std::int64_t kPerPiece = 100'000;
-        const auto count = static_cast<std::int64_t>(fitting_.size());
+        const auto count = static_cast<std::int64_t>(pieces_.size());
         search.max_evaluations = std::min(options_.max_evaluations, kPerPiece * count * count);
         search.time_s = options_.time_s;
-        compact(frame.plan, start.packing, search, context_, [&](const Packing& better) {
+        search_sheets(problem_, search, context, [&](const SheetPacking& packing) {
             try {
-                best = proven(layout_of(frame, better));
+                Layout layout = layout_of(packing);
+                layout.smallest_gap_mm = prove_layout(layout, pieces_, options_);
+                best = std::move(layout);
                 return true;
             } catch (const geometry::Error&) {
                 return false;
@@ -114,105 +101,75 @@ public:
     }
 
 private:
-    Frame make_frame(int quarters, std::size_t sheets) const {
-        Frame frame;
-        frame.quarters = quarters;
-        frame.extent = quarters % 2 == 0 ? extent_ : Eigen::Vector2d(extent_.y(), extent_.x());
-        for (std::size_t i = 0; i < fitting_.size(); ++i) {
-            const Rotations allowed =
-                allowed_rotations(options_, *fitting_[i]).shifted(-90.0 * quarters);
-            frame.plan.parts.push_back(make_part(fitting_[i]->outline, grow_, allowed));
-            std::vector<TurnedPart> turned(allowed.is_list() ? allowed.size() : 0);
-            for (std::size_t k = 0; k < turned.size(); ++k) {
-                turn_part(frame.plan.parts.back(), allowed[k], turned[k]);
-            }
-            frame.plan.turned.push_back(std::move(turned));
-            frame.plan.part_of.push_back(i);
-        }
-        // Outlines are grown, so their sheets are, too.
-        frame.plan.rooms.assign(sheets,
-                                {frame.extent.x() + 2.0 * grow_, frame.extent.y() + 2.0 * grow_});
-        return frame;
+    Placement placement_of(std::size_t item, const Position& at) const {
+        const double shift_mm = growth_.edge_mm - growth_.grow_mm;
+        const Eigen::Vector2d& middle = problem_.parts[item].origin;
+        const Ring origin = moved({middle}, {at.angle_deg, Eigen::Vector2d::Zero()});
+        const Eigen::Vector2d p =
+            Eigen::Vector2d(at.x + shift_mm, at.y + shift_mm) - origin.front();
+        return {pieces_[item]->id, p.x(), p.y(), at.angle_deg, false};
     }
 
-    // The better one of heaps towards either edge.
-    std::pair<Frame, HeapStart> first_layout() const {
-        const auto rows = static_cast<std::int64_t>(
-            kHeapShare * static_cast<double>(options_.max_evaluations) / 2.0);
-        std::optional<std::pair<Frame, HeapStart>> best;
-        for (const int quarters : {0, 1}) {
-            Frame frame = make_frame(quarters, 1);
-            HeapStart start = heap_start(frame.plan, rows, options_.seed, context_);
-            frame.plan.rooms.assign(static_cast<std::size_t>(start.packing.extent.bins),
-                                    frame.plan.rooms.front());
-            const double area = area_taken(frame.plan, start.packing.extent);
-            if (!best || area < area_taken(best->first.plan, best->second.packing.extent)) {
-                best.emplace(std::move(frame), std::move(start));
-            }
-        }
-        return std::move(*best);
-    }
-
-    Placement placement_of(const Frame& frame, std::size_t item, const Position& at) const {
-        const double edge_mm = options_.margin_mm + options_.kerf_mm / 2.0;
-        Eigen::Vector2d p(at.x - grow_, at.y - grow_);
-        for (int turn = 0; turn < frame.quarters; ++turn) {
-            p = {frame.extent.y() - p.y(), p.x()};
-        }
-        const double angle = std::remainder(at.angle_deg + 90.0 * frame.quarters, 360.0);
-        const Ring origin = moved({frame.plan.parts[item].origin}, {angle, {0.0, 0.0}});
-        p += Eigen::Vector2d(edge_mm, edge_mm) - origin.front();
-        return {fitting_[item]->id, p.x(), p.y(), angle, false};
-    }
-
-    Layout layout_of(const Frame& frame, const Packing& packing) const {
+    Layout layout_of(const SheetPacking& packing) const {
         Layout layout;
-        layout.unplaced = unplaced_;
-        for (int bin = 0; bin < packing.extent.bins; ++bin) {
+        double whole_mm2 = 0.0;
+        for (const std::size_t kind : packing.kinds) {
+            const StockItem& stock = stock_[kind];
             Sheet sheet;
-            sheet.size = size_;
+            sheet.id = static_cast<int>(layout.sheets.size()) + 1;
+            sheet.size = stock.size;
+            sheet.outline = stock.outline;
+            sheet.stock = stock.id;
+            sheet.cost = stock.cost;
+            sheet.zones = stock.zones;
+            whole_mm2 += sheet_area_mm2(sheet);
             layout.sheets.push_back(std::move(sheet));
         }
         double area_mm2 = 0.0;
         for (std::size_t item = 0; item < packing.positions.size(); ++item) {
             const Position& at = packing.positions[item];
+            if (at.bin < 0) {
+                layout.unplaced.push_back(pieces_[item]->id);
+                continue;
+            }
             layout.sheets[static_cast<std::size_t>(at.bin)].placements.push_back(
-                placement_of(frame, item, at));
-            area_mm2 += std::abs(signed_area(fitting_[item]->outline));
+                placement_of(item, at));
+            area_mm2 += std::abs(ring_area(pieces_[item]->outline));
         }
-        // A search may empty any sheet.
-        std::erase_if(layout.sheets, [](const Sheet& sheet) { return sheet.placements.empty(); });
-        for (std::size_t i = 0; i < layout.sheets.size(); ++i) {
-            layout.sheets[i].id = static_cast<int>(i) + 1;
-        }
-        layout.density_percent =
-            100.0 * area_mm2 /
-            (size_.width_mm * size_.height_mm * static_cast<double>(layout.sheets.size()));
+        layout.density_percent = whole_mm2 > 0.0 ? 100.0 * area_mm2 / whole_mm2 : 0.0;
         return layout;
     }
 
-    Layout proven(Layout layout) const {
-        layout.smallest_gap_mm = prove_layout(layout, all_, options_);
-        return layout;
-    }
-
-    std::span<const Piece* const> all_;
-    const SheetSize& size_;
+    std::span<const Piece* const> pieces_;
+    std::span<const StockItem> stock_;
     const NestOptions& options_;
-    const geometry::Context& context_;
-    Eigen::Vector2d extent_;
-    double grow_ = 0.0;
-    std::vector<const Piece*> fitting_;
-    std::vector<std::string> unplaced_;
+    SheetGrowth growth_;
+    SheetProblem problem_;
 };
 
 }  // namespace
+
+double sheet_area_mm2(const Sheet& sheet) {
+    return sheet.outline.empty() ? sheet.size.width_mm * sheet.size.height_mm
+                                 : std::abs(ring_area(sheet.outline));
+}
+
+Layout nest(std::span<const Piece* const> pieces,
+            std::span<const StockItem> stock,
+            const NestOptions& options,
+            const geometry::Context& context) {
+    return Nesting(pieces, stock, options).run(context);
+}
 
 Layout nest(std::span<const Piece* const> pieces,
             const SheetSize& size,
             const NestOptions& options,
             const geometry::Context& context) {
-    return Nesting(pieces, size, options, context).run();
+    StockItem sheet;
+    sheet.size = size;
+    sheet.quantity.reset();
+    sheet.cost = 1.0;
+    return nest(pieces, {&sheet, 1}, options, context);
 }
 
 }  // namespace leafcutter::fab

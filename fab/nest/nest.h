@@ -1,6 +1,7 @@
-// Places pieces on as many sheets as needed, without overlap.
+// Places pieces on sheets without overlap: rectangles of several sizes and remnants of any outline,
+// as many of each as there are.
 //
-// Equal pieces, options and seed give equal output, whatever the number of threads, unless
+// Equal pieces, sheets, options and seed give equal output, whatever the number of threads, unless
 // `time_s` ends the search. A stop request ends it with the best layout so far.
 
 #pragma once
@@ -14,6 +15,7 @@
 
 #include "fab/job_params.h"
 #include "fab/layout.h"
+#include "fab/material/stock.h"
 #include "fab/nest/rotations.h"
 #include "geometry/context.h"
 
@@ -31,14 +33,26 @@ struct NestOptions {
     double time_s = 0.0;  // By the context's clock, from the first layout on; 0: no limit.
 };
 
-// Nests `pieces` on sheets of `size`; sheet ids count from 1. Every layout returned is
-// proven: no two outlines closer than spacing + kerf, none outside the margin.
+// Nests `pieces` on sheets of `stock`: all pieces if they fit, then at the least cost, then with as
+// much as possible of the last sheet whole. Sheet ids count from 1. Every layout returned is
+// proven: no two outlines closer than spacing + kerf, none outside the margin or on a hole, defect
+// or zone to keep out of. Pieces that find no room are the layout's `unplaced`.
 //
-// Throws Error(BadOption) for a sheet smaller than its margins or an outline that is no simple
-// polygon, naming the piece; Cancelled if stopped before there is a layout.
+// Throws Error(BadOption) for a sheet smaller than its margins, an outline that is no simple
+// polygon or an id that is there twice, naming piece or sheet; Cancelled if stopped before there is
+// a layout.
+Layout nest(std::span<const Piece* const> pieces,
+            std::span<const StockItem> stock,
+            const NestOptions& options,
+            const geometry::Context& context = {});
+
+// On as many sheets of `size` as it takes.
 Layout nest(std::span<const Piece* const> pieces,
             const SheetSize& size,
             const NestOptions& options,
             const geometry::Context& context = {});
+
+// Of a sheet: its outline's, holes left in.
+double sheet_area_mm2(const Sheet& sheet);
 
 }  // namespace leafcutter::fab

@@ -109,18 +109,28 @@ std::vector<std::vector<SheetRun>> first_offers(const SheetProblem& problem) {
         }
         return offers;
     }
-    for (const std::size_t first : endless) {
+    const auto is_cheap = [&](std::size_t kind) {
+        return problem.kinds[kind].quantity &&
+               rate(problem.kinds[kind]) <= rate(problem.kinds[endless.front()]);
+    };
+    const auto offer = [&](std::size_t first, bool cheap_ones_before) {
         std::vector<SheetRun> runs;
         std::vector<SheetRun> behind;
         for (const std::size_t kind : order) {
-            const bool cheap = problem.kinds[kind].quantity &&
-                               rate(problem.kinds[kind]) <= rate(problem.kinds[endless.front()]);
-            (cheap ? runs : behind).push_back(run_of(kind));
+            if (kind != first) {
+                (cheap_ones_before && is_cheap(kind) ? runs : behind).push_back(run_of(kind));
+            }
         }
         runs.push_back(run_of(first));
-        std::copy_if(behind.begin(), behind.end(), std::back_inserter(runs),
-                     [first](const SheetRun& run) { return run.kind != first; });
+        runs.insert(runs.end(), behind.begin(), behind.end());
         offers.push_back(std::move(runs));
+    };
+    const bool any_cheap = std::any_of(order.begin(), order.end(), is_cheap);
+    for (const std::size_t first : endless) {
+        offer(first, true);
+    }
+    if (any_cheap) {
+        offer(endless.front(), false);
     }
     return offers;
 }

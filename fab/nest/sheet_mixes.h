@@ -16,7 +16,7 @@ using Mix = std::vector<int>;
 
 // For each kind that there is no end of: the sheets of limited number that cost no more for their
 // area, cheapest first, then that kind; behind it whatever else there is, for what fits on none of
-// these.
+// these. And the cheapest of them alone: remnants that would hardly be filled stay whole.
 std::vector<std::vector<SheetRun>> first_offers(const SheetProblem& problem);
 
 // Of the mixes that cost less than `kinds`, have at least `area` and did not fail before: the one

@@ -6,7 +6,9 @@
 
 namespace leafcutter::fab {
 
-SheetFrame::SheetFrame(const SheetProblem& problem, int quarters)
+SheetFrame::SheetFrame(const SheetProblem& problem,
+                       const std::vector<std::vector<NestPart>>& taken,
+                       int quarters)
     : problem_(problem), quarters_(quarters), parts_(problem.parts) {
     for (NestPart& part : parts_) {
         part.allowed_deg = part.allowed_deg.shifted(-90.0 * quarters);
@@ -16,8 +18,8 @@ SheetFrame::SheetFrame(const SheetProblem& problem, int quarters)
         }
         turned_.push_back(std::move(turned));
     }
-    for (const SheetKind& kind : problem.kinds) {
-        fixed_.push_back(fixed_of(kind));
+    for (std::size_t kind = 0; kind < problem.kinds.size(); ++kind) {
+        fixed_.push_back(fixed_of(problem.kinds[kind], taken[kind]));
     }
 }
 
@@ -31,26 +33,34 @@ double SheetFrame::height(std::size_t kind) const {
     return quarters_ % 2 == 0 ? sheet.height : sheet.width;
 }
 
-std::vector<BoardPlan::Fixed> SheetFrame::fixed_of(const SheetKind& kind) const {
+std::vector<std::vector<NestPart>> taken_parts(const SheetProblem& problem) {
+    std::vector<std::vector<NestPart>> parts;
+    for (const SheetKind& kind : problem.kinds) {
+        parts.emplace_back();
+        for (const FixedRing& taken : kind.fixed) {
+            parts.back().push_back(make_part(taken.ring, 0.0, {0.0}));
+        }
+    }
+    return parts;
+}
+
+std::vector<BoardPlan::Fixed> SheetFrame::fixed_of(const SheetKind& kind,
+                                                   const std::vector<NestPart>& parts) const {
     std::vector<BoardPlan::Fixed> out;
-    for (const FixedRing& taken : kind.fixed) {
-        Ring ring = taken.ring;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Eigen::Vector2d origin = parts[i].origin;
         double width = kind.width;
         double height = kind.height;
         for (int turn = 0; turn < quarters_; ++turn) {
-            for (Eigen::Vector2d& point : ring) {
-                point = {point.y(), width - point.x()};
-            }
+            origin = {origin.y(), width - origin.x()};
             std::swap(width, height);
         }
-        const NestPart part = make_part(ring, 0.0, {0.0});
         BoardPlan::Fixed fixed;
-        turn_part(part, 0.0, fixed.shape);
+        turn_part(parts[i], -90.0 * quarters_, fixed.shape);
         // Back to where it lies: the part is about its own origin.
-        shift_part(fixed.shape, static_cast<float>(part.origin.x()),
-                   static_cast<float>(part.origin.y()));
-        fixed.quality = taken.quality;
-        fixed.solid = taken.solid;
+        shift_part(fixed.shape, static_cast<float>(origin.x()), static_cast<float>(origin.y()));
+        fixed.quality = kind.fixed[i].quality;
+        fixed.solid = kind.fixed[i].solid;
         out.push_back(std::move(fixed));
     }
     return out;

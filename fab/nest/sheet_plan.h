@@ -44,11 +44,17 @@ struct SheetPacking {
     std::vector<Position> positions;  // [item]; bin: a sheet, -1: not laid.
 };
 
+// What is taken of each kind of sheet, as parts.
+std::vector<std::vector<NestPart>> taken_parts(const SheetProblem& problem);
+
 // The problem with every sheet turned clockwise by some quarters: a search fills sheets from the
 // left, so that a quarter turn fills them from below.
 class SheetFrame {
 public:
-    SheetFrame(const SheetProblem& problem, int quarters);
+    // `taken`: taken_parts(problem).
+    SheetFrame(const SheetProblem& problem,
+               const std::vector<std::vector<NestPart>>& taken,
+               int quarters);
 
     // A board for these items, in that order, on such sheets.
     BoardPlan plan(std::span<const std::size_t> items, std::span<const std::size_t> kinds) const;
@@ -61,7 +67,8 @@ public:
     double height(std::size_t kind) const;
 
 private:
-    std::vector<BoardPlan::Fixed> fixed_of(const SheetKind& kind) const;
+    std::vector<BoardPlan::Fixed> fixed_of(const SheetKind& kind,
+                                           const std::vector<NestPart>& parts) const;
 
     const SheetProblem& problem_;
     int quarters_;

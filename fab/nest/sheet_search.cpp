@@ -24,8 +24,10 @@ constexpr double kHidesShare = 0.75;   // (if all are irregular),
 constexpr double kBriefShare = 0.125;  // and a short look at each of several sizes.
 constexpr std::size_t kMostTries = 4;  // Of mixes that came to nothing.
 
-// Filling irregular sheets denser than this is not tried for.
-constexpr double kDensest = 0.9;
+// How densely sheets may come to be filled: hides, and rectangles by what they are filled so far.
+constexpr double kDensestHides = 0.9;
+constexpr double kDenserYet = 1.3;
+constexpr double kDensest = 0.98;
 
 class SheetSearch {
 public:
@@ -37,7 +39,9 @@ public:
           options_(options),
           context_(context),
           accept_(accept),
-          start_(problem, options.seed) {
+          start_(problem, options) {
+        hides_ = std::none_of(problem.kinds.begin(), problem.kinds.end(),
+                              [](const SheetKind& kind) { return kind.is_plain(); });
         for (const std::size_t part : problem.part_of) {
             area_ += problem.parts[part].area;
         }
@@ -52,10 +56,8 @@ public:
         }
         done_ = kStartShare;
         choose_start(trials);
-        const auto is_plain = [](const SheetKind& kind) { return kind.is_plain(); };
-        const bool hides = std::none_of(problem_.kinds.begin(), problem_.kinds.end(), is_plain);
-        if (problem_.kinds.size() > 1 || hides) {
-            find_cheaper(hides ? kHidesShare : kMixesShare);
+        if ((problem_.kinds.size() > 1 || hides_) && !best_.kinds.empty()) {
+            find_cheaper(hides_ ? kHidesShare : kMixesShare);
         }
         compact_best(1.0 - done_);
         return packing_of(best_);
@@ -187,13 +189,27 @@ private:
         });
     }
 
+    double densest() const {
+        if (hides_) {
+            return kDensestHides;
+        }
+        double whole = 0.0;
+        for (const std::size_t kind : best_.kinds) {
+            whole += problem_.kinds[kind].area;
+        }
+        const SheetKind& last = problem_.kinds[best_.kinds.back()];
+        const double used =
+            best_.last_width / start_.frame(best_.quarters).width(best_.kinds.back());
+        return std::min(kDensest, kDenserYet * area_ / (whole - (1.0 - used) * last.area));
+    }
+
     // Mixes that cost less, the roomiest first; each that works sets a lower mark for the rest.
     void find_cheaper(double share) {
         std::vector<Mix> failed;
         double left = share;
         while (failed.size() < kMostTries) {
             const std::optional<Mix> mix = roomiest_cheaper_mix(
-                problem_, best_.kinds, best_.unplaced > 0 ? area_ : area_ / kDensest, failed);
+                problem_, best_.kinds, best_.unplaced > 0 ? area_ : area_ / densest(), failed);
             if (!mix || context_.stop.stop_requested()) {
                 return;
             }
@@ -253,6 +269,7 @@ private:
     const geometry::Context& context_;
     const std::function<bool(const SheetPacking&)>& accept_;
     SheetStart start_;
+    bool hides_ = false;  // All sheets are irregular.
     double area_ = 0.0;
     double done_ = 0.0;  // Share of the work.
     SheetTrial best_;

@@ -11,6 +11,10 @@ namespace leafcutter::fab {
 namespace {
 
 constexpr std::size_t kMostSheets = 10'000;
+constexpr std::int64_t kMostSamples = 1000;
+
+// Of what a new sheet is worth for its area: a remnant that is hardly filled had better stay whole.
+constexpr double kWorthOfRemnant = 0.5;
 
 }  // namespace
 
@@ -30,10 +34,20 @@ struct SheetStart::Rest {
     const geometry::Context& context;
 };
 
-SheetStart::SheetStart(const SheetProblem& problem, std::uint64_t seed)
-    : problem_(problem), seed_(seed) {
-    frames_.emplace_back(problem, 0);
-    frames_.emplace_back(problem, 1);
+SheetStart::SheetStart(const SheetProblem& problem, const CompactionOptions& options)
+    : problem_(problem), seed_(options.seed) {
+    // Trying more places for an item than for all later on would be out of proportion.
+    const auto items = static_cast<std::int64_t>(problem.part_of.size());
+    samples_ = static_cast<int>(
+        std::clamp<std::int64_t>(options.max_evaluations / (10 * items + 1), 40, kMostSamples));
+    std::size_t bands = 0;
+    for (const std::size_t part : problem.part_of) {
+        bands += problem.parts[part].is_band() ? 1 : 0;
+    }
+    banded_ = 2 * bands > problem.part_of.size();
+    const std::vector<std::vector<NestPart>> taken = taken_parts(problem);
+    frames_.emplace_back(problem, taken, 0);
+    frames_.emplace_back(problem, taken, 1);
     for (const SheetKind& kind : problem.kinds) {
         // A part that only just fits may not once its corners are rounded.
         const double slack = 1e-6 * std::max(kind.width, kind.height);
@@ -86,11 +100,11 @@ void SheetStart::sum_up(SheetTrial& trial) const {
         const double share = static_cast<int>(bin) == last
                                  ? trial.last_width / frame(trial.quarters).width(trial.kinds[bin])
                                  : 1.0;
-        trial.taken += kind.cost > 0.0 || last == 0 ? share * kind.area : 0.0;
+        trial.taken += share * kind.area * (kind.cost > 0.0 ? 1.0 : kWorthOfRemnant);
     }
 }
 
-void SheetStart::lay_plain(const SheetRun& run,
+void SheetStart::lay_heaps(const SheetRun& run,
                            std::int64_t rows,
                            Rest& rest,
                            SheetTrial& trial) const {
@@ -117,6 +131,10 @@ void SheetStart::lay_plain(const SheetRun& run,
             others.push_back(items[i]);
             continue;
         }
+        if (at.bin < 0) {
+            others.push_back(items[i]);
+            continue;
+        }
         at.bin += first;
         trial.positions[items[i]] = at;
     }
@@ -124,9 +142,9 @@ void SheetStart::lay_plain(const SheetRun& run,
     rest.items = std::move(others);
 }
 
-void SheetStart::lay_irregular(std::span<const SheetRun> runs,
-                               Rest& rest,
-                               SheetTrial& trial) const {
+void SheetStart::lay_one_by_one(std::span<const SheetRun> runs,
+                                Rest& rest,
+                                SheetTrial& trial) const {
     std::vector<std::size_t> kinds;
     for (const SheetRun& run : runs) {
         const std::size_t most = std::min(kMostSheets, rest.items.size());
@@ -137,7 +155,7 @@ void SheetStart::lay_irregular(std::span<const SheetRun> runs,
         return;
     }
     const BoardPlan plan = frame(trial.quarters).plan(rest.items, kinds);
-    const Packing packing = first_packing(plan, seed_, rest.context);
+    const Packing packing = first_packing(plan, {seed_, samples_}, rest.context);
     trial.evaluations += static_cast<std::int64_t>(rest.items.size());
     const int first = static_cast<int>(trial.kinds.size());
     trial.kinds.insert(trial.kinds.end(), kinds.begin(), kinds.end());
@@ -154,6 +172,21 @@ void SheetStart::lay_irregular(std::span<const SheetRun> runs,
     rest.items = std::move(others);
 }
 
+std::vector<SheetRun> SheetStart::unused(std::span<const SheetRun> runs,
+                                         const SheetTrial& trial) const {
+    std::vector<SheetRun> left;
+    for (SheetRun run : runs) {
+        if (run.count) {
+            *run.count -=
+                static_cast<int>(std::count(trial.kinds.begin(), trial.kinds.end(), run.kind));
+        }
+        if (run.count.value_or(1) > 0) {
+            left.push_back(run);
+        }
+    }
+    return left;
+}
+
 SheetTrial SheetStart::lay(std::span<const SheetRun> runs,
                            int quarters,
                            std::int64_t rows,
@@ -168,18 +201,19 @@ SheetTrial SheetStart::lay(std::span<const SheetRun> runs,
     std::iota(rest.items.begin(), rest.items.end(), std::size_t{0});
     for (std::size_t i = 0; i < runs.size() && !rest.items.empty();) {
         context.check();
-        if (problem_.kinds[runs[i].kind].is_plain()) {
-            lay_plain(runs[i], rows, rest, trial);
+        if (heaps_suit(problem_.kinds[runs[i].kind])) {
+            lay_heaps(runs[i], rows, rest, trial);
             ++i;
             continue;
         }
         std::size_t end = i;
-        while (end < runs.size() && !problem_.kinds[runs[end].kind].is_plain()) {
+        while (end < runs.size() && !heaps_suit(problem_.kinds[runs[end].kind])) {
             ++end;
         }
-        lay_irregular(runs.subspan(i, end - i), rest, trial);
+        lay_one_by_one(runs.subspan(i, end - i), rest, trial);
         i = end;
     }
+    lay_one_by_one(unused(runs, trial), rest, trial);
     sum_up(trial);
     return trial;
 }

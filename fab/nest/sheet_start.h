@@ -22,7 +22,7 @@ struct SheetTrial {
     double last_width = 0.0;          // How far the last sheet is used.
     std::size_t unplaced = 0;
     double cost = 0.0;
-    double taken = 0.0;  // Area of the sheets that cost something, the last one by its used part.
+    double taken = 0.0;  // Area of all sheets, the last one by its used part; remnants count half.
     std::int64_t evaluations = 0;
 };
 
@@ -37,12 +37,14 @@ struct SheetRun {
 
 class SheetStart {
 public:
-    SheetStart(const SheetProblem& problem, std::uint64_t seed);
+    // Of the options, the seed and the work count.
+    SheetStart(const SheetProblem& problem, const CompactionOptions& options);
 
     const SheetFrame& frame(int quarters) const { return frames_[quarters != 0 ? 1 : 0]; }
 
-    // Lays what it can on the sheets of the runs, in their order: heaps on plain rectangles, each
-    // largest part first on others. `rows`: what it may try for each heap, at least one is built.
+    // Lays what it can on the sheets of the runs, in their order: heaps of bands and on plain
+    // rectangles, the largest item first on others. `rows`: what it may try for each heap, at least
+    // one is built.
     SheetTrial lay(std::span<const SheetRun> runs,
                    int quarters,
                    std::int64_t rows,
@@ -58,11 +60,15 @@ public:
 
 private:
     struct Rest;
-    void lay_plain(const SheetRun& run, std::int64_t rows, Rest& rest, SheetTrial& trial) const;
-    void lay_irregular(std::span<const SheetRun> runs, Rest& rest, SheetTrial& trial) const;
+    void lay_heaps(const SheetRun& run, std::int64_t rows, Rest& rest, SheetTrial& trial) const;
+    void lay_one_by_one(std::span<const SheetRun> runs, Rest& rest, SheetTrial& trial) const;
+    bool heaps_suit(const SheetKind& kind) const { return banded_ || kind.is_plain(); }
+    std::vector<SheetRun> unused(std::span<const SheetRun> runs, const SheetTrial& trial) const;
 
     const SheetProblem& problem_;
     std::uint64_t seed_;
+    int samples_ = 0;      // Of places for an item, one by one.
+    bool banded_ = false;  // Most items are long bands: those stack well in heaps.
     std::vector<SheetFrame> frames_;
     std::vector<std::vector<char>> fits_;  // [kind][part]
 };

@@ -47,10 +47,6 @@ std::string ring_fault(const Ring& ring) {
         }
         extent = std::max(extent, point.cwiseAbs().maxCoeff());
     }
-    const Eigen::Vector2d size = bounds(ring).size();
-    if (!(std::abs(signed_area(ring)) > 1e-9 * size.squaredNorm())) {
-        return "has no area";
-    }
     const WholeRing whole = to_whole(ring, exact_unit(extent));
     const std::size_t count = whole.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -61,6 +57,10 @@ std::string ring_fault(const Ring& ring) {
                 return fmt::format("crosses itself between corners {} and {}", i, j);
             }
         }
+    }
+    const Eigen::Vector2d size = bounds(ring).size();
+    if (!(std::abs(signed_area(ring)) > 1e-9 * size.squaredNorm())) {
+        return "has no area";
     }
     return {};
 }

@@ -20,6 +20,9 @@ std::string report_json(const JobResult& job);
 // The bill of materials as a table (RFC 4180): a line for each material.
 std::string bill_csv(const JobResult& job);
 
+// What is at hand once the job is cut, for the next one (docs: nesting.stock).
+std::string stock_json(const JobResult& job);
+
 // The report and the page of some pieces of a job that are cut again (recut.h): nothing of the
 // surface.
 std::string recut_report_json(const JobResult& job);

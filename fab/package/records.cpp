@@ -131,10 +131,29 @@ nlohmann::ordered_json input_record(const InputFacts& input) {
 }
 
 nlohmann::ordered_json nesting_record(const Layout& layout) {
+    json stock = json::array();
+    json offcuts = json::array();
+    for (const Sheet& sheet : layout.sheets) {
+        if (!sheet.stock.empty()) {
+            stock.push_back({{"id", sheet.stock}, {"sheet", sheet.id}});
+        }
+        if (sheet.offcut) {
+            offcuts.push_back(
+                {{"id", sheet.offcut->id},
+                 {"sheet", sheet.id},
+                 {"material", sheet.material},
+                 {"area_mm2", sheet.offcut->area_mm2},
+                 {"rectangle_mm",
+                  {sheet.offcut->rectangle.width_mm, sheet.offcut->rectangle.height_mm}}});
+        }
+    }
     return {{"density_percent", layout.density_percent},
             {"sheets", layout.sheets.size()},
             {"smallest_gap_mm", layout.smallest_gap_mm},
-            {"unplaced", layout.unplaced.size()}};
+            {"unplaced", layout.unplaced.size()},
+            {"unplaced_pieces", layout.unplaced},
+            {"from_stock", std::move(stock)},
+            {"offcuts", std::move(offcuts)}};
 }
 
 namespace {

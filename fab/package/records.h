@@ -13,6 +13,9 @@ namespace leafcutter::fab {
 // Everything of a material; what it doesn't have is left out.
 nlohmann::ordered_json material_record(const Material& material);
 
+// As nesting.stock takes it.
+nlohmann::ordered_json stock_record(const StockItem& item);
+
 nlohmann::ordered_json bill_record(const Bill& bill);
 
 nlohmann::ordered_json machine_record(const MachineProfile& machine);

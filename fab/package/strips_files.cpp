@@ -90,6 +90,34 @@ json piece_json(const Piece& piece) {
             {"end_tab", tab_json(piece.end_tab)}};
 }
 
+const char* zone_key(ZoneKind kind) {
+    switch (kind) {
+        case ZoneKind::Hole:
+            return "holes";
+        case ZoneKind::KeepOut:
+            return "keep_out";
+        case ZoneKind::Defect:
+            break;
+    }
+    return "defects";
+}
+
+json offcut_json(const Offcut& offcut) {
+    json holes = json::array();
+    for (const Ring& hole : offcut.holes) {
+        holes.push_back(points_json(hole));
+    }
+    return {{"id", offcut.id},
+            {"outline", points_json(offcut.outline)},
+            {"holes", std::move(holes)},
+            {"area_mm2", offcut.area_mm2},
+            {"rectangle",
+             {{"x_mm", offcut.corner.x()},
+              {"y_mm", offcut.corner.y()},
+              {"width_mm", offcut.rectangle.width_mm},
+              {"height_mm", offcut.rectangle.height_mm}}}};
+}
+
 json sheet_json(const Sheet& sheet) {
     json placements = json::array();
     for (const Placement& placement : sheet.placements) {
@@ -107,6 +135,15 @@ json sheet_json(const Sheet& sheet) {
                    {"placements", std::move(placements)}};
     if (!sheet.outline.empty()) {
         result["outline"] = points_json(sheet.outline);
+    }
+    if (!sheet.stock.empty()) {
+        result["stock"] = sheet.stock;
+    }
+    for (const SheetZone& zone : sheet.zones) {
+        result[zone_key(zone.kind)].push_back(points_json(zone.outline));
+    }
+    if (sheet.offcut) {
+        result["offcut"] = offcut_json(*sheet.offcut);
     }
     return result;
 }

@@ -14,6 +14,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "fab/nest/instance.h"
@@ -54,6 +55,23 @@ void write_file(const std::string& path, const std::string& text) {
     std::filesystem::rename(part, path);
 }
 
+std::vector<int> unplaced_ids(const fab::NestInstance& instance,
+                              const fab::InstanceSolution& solution) {
+    std::vector<int> ids;
+    for (const std::size_t item : solution.unplaced) {
+        ids.push_back(instance.items[item].id);
+    }
+    return ids;
+}
+
+double cost_of(const fab::NestInstance& instance, const fab::InstanceSolution& solution) {
+    double cost = 0.0;
+    for (const fab::InstanceLayout& layout : solution.layouts) {
+        cost += layout.bin ? instance.bins[*layout.bin].cost : 0.0;
+    }
+    return cost;
+}
+
 void tell(const NestCommandOptions& options,
           const fab::NestInstance& instance,
           const fab::InstanceSolution& solution,
@@ -65,6 +83,8 @@ void tell(const NestCommandOptions& options,
                                   {"strip_width", solution.strip_width},
                                   {"sheets", solution.layouts.size()},
                                   {"unplaced", solution.unplaced.size()},
+                                  {"unplaced_items", unplaced_ids(instance, solution)},
+                                  {"cost", cost_of(instance, solution)},
                                   {"smallest_gap", solution.smallest_gap},
                                   {"evaluations", solution.evaluations}}
                        .dump());
@@ -74,11 +94,12 @@ void tell(const NestCommandOptions& options,
         fmt::print("{}: {:.2f} % of {:.6g} x {:.6g}\n", instance.name, 100.0 * solution.density,
                    solution.strip_width, instance.strip_height);
     } else {
-        fmt::print("{}: {} bins, {:.2f} %\n", instance.name, solution.layouts.size(),
-                   100.0 * solution.density);
+        fmt::print("{}: {} bins for {:g}, {:.2f} %\n", instance.name, solution.layouts.size(),
+                   cost_of(instance, solution), 100.0 * solution.density);
     }
     if (!solution.unplaced.empty()) {
-        fmt::print(stderr, "note: {} items fit nowhere\n", solution.unplaced.size());
+        fmt::print(stderr, "note: no room for {} items: {}\n", solution.unplaced.size(),
+                   fmt::join(unplaced_ids(instance, solution), ", "));
     }
 }
 

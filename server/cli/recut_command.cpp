@@ -23,6 +23,7 @@
 #include "server/material_json.h"
 #include "server/params.h"
 #include "server/recut.h"
+#include "server/outline_json.h"
 #include "server/recut_wishes.h"
 #include "server/zip_reader.h"
 

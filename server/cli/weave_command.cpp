@@ -23,6 +23,7 @@
 #include "server/cli/package_dir.h"
 #include "server/cli/progress_line.h"
 #include "server/params.h"
+#include "server/params_stock.h"
 
 namespace leafcutter::server {
 
@@ -33,6 +34,7 @@ struct WeaveOptions {
     std::string output;
     std::string params_file;
     std::string materials_file;
+    std::string stock_file;
     std::vector<std::string> assignments;
 };
 
@@ -45,6 +47,11 @@ fab::JobParams job_params(const WeaveOptions& options) {
     }
     for (const std::string& assignment : options.assignments) {
         set_param(params, assignment);
+    }
+    if (!options.stock_file.empty()) {
+        const std::vector<std::byte> bytes = read_input_file(options.stock_file, kMostBytes);
+        params["nesting"]["stock"] =
+            stock_of_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     }
     return params_from_json(params);
 }
@@ -121,6 +128,8 @@ void add_weave_command(CLI::App& app, const CommonOptions& common) {
     command->add_option("--params", options->params_file, "Job parameters, a JSON file");
     command->add_option("--materials", options->materials_file,
                         "A JSON file with materials of your own");
+    command->add_option("--stock", options->stock_file,
+                        "Sheets and remnants to cut from first: the stock.json of another package");
     command
         ->add_option("--set", options->assignments,
                      "One job parameter: grid.strip_width_mm=5 (may be repeated)")

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -257,7 +258,7 @@ TEST(NestInstanceJson, ReadsBothKindsOfProblems) {
         R"({"items": [{"id": 0, "demand": 1, "shape": {"type": "rectangle",
             "data": {"x_min": 0, "y_min": 0, "width": 2, "height": 1}}}],
             "bins": [{"id": 1, "stock": 2, "cost": 5, "shape": {"type": "polygon", "data":
-            {"outer": [[0,0],[9,0],[9,9]], "inner": [[[5,1],[6,1],[6,2]]]}}, "zones": []}]})");
+            {"outer": [[0,0],[9,0],[9,9],[0,0]], "inner": [[[5,1],[6,1],[6,2],[5,1]]]}}, "zones": []}]})");
     EXPECT_EQ(bins.bins[0].stock, 2);
     EXPECT_EQ(bins.bins[0].zones.size(), 1U);
     EXPECT_TRUE(bins.items[0].allowed_deg.empty());
@@ -272,6 +273,71 @@ TEST(NestInstanceJson, RefusesWhatIsNoInstance) {
               "strip_height": 1})"}) {
         EXPECT_THROW(read_instance(text), geometry::Error) << text;
     }
+}
+
+std::string refusal(const std::string& text) {
+    try {
+        const NestInstance instance = read_instance(text);
+        solve(instance, short_search(1), {});
+    } catch (const geometry::Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+std::string strip_with(const std::string& item) {
+    return R"({"strip_height": 10, "items": [)" + item + "]}";
+}
+
+std::string item_with(const std::string& fields) {
+    return strip_with(R"({"id": 42, "demand": 1, )" + fields + "}");
+}
+
+std::string shape(const std::string& points) {
+    return item_with(R"("shape": {"type": "simple_polygon", "data": )" + points + "}");
+}
+
+TEST(NestInstanceJson, NamesTheItemAndTheFault) {
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {shape("[[0,0],[4,0],[4,4]]"), "open"},
+        {shape("[[0,0],[4,0],[0,0]]"), "three"},
+        {shape("[[0,0],[4,0],[8,0],[0,0]]"), "no area"},
+        {shape("[[0,0],[4,4],[4,0],[0,4],[0,0]]"), "crosses itself"},
+        {shape("[[0,0],[1e308,0],[4,4],[0,0]]"), "within"},
+        {shape("[[0,0],[4,0],[\"x\",4],[0,0]]"), "number"},
+        {shape("[[0,0],[4,0,1],[4,4],[0,0]]"), "[x, y]"},
+        {shape("[[0,0],[400,0],[400,400],[0,400],[0,0]]"), "too large"},
+        {item_with(R"("shape": {"type": "disc", "data": []})"), "type"},
+        {item_with(R"("shape": {"type": "rectangle", "data":
+            {"x_min": 0, "y_min": 0, "width": -3, "height": 1}})"),
+         "above 0"},
+        {strip_with(R"({"id": 42, "demand": -1, "shape": {}})"), "demand"},
+        {item_with(R"("allowed_orientations": [[5, -5]], "shape": {"type": "simple_polygon",
+            "data": [[0,0],[1,0],[1,1],[0,0]]})"),
+         "interval"},
+    };
+    for (const auto& [text, fault] : cases) {
+        const std::string said = refusal(text);
+        EXPECT_NE(said.find("item 42"), std::string::npos) << text << ": " << said;
+        EXPECT_NE(said.find(fault), std::string::npos) << text << ": " << said;
+    }
+}
+
+TEST(NestInstanceJson, NamesWhatIsThereTwiceOrNotAtAll) {
+    const std::string triangle =
+        R"("shape": {"type": "simple_polygon", "data": [[0,0],[1,0],[1,1],[0,0]]}})";
+    const std::string item = R"({"id": 7, "demand": 1, )" + triangle;
+    EXPECT_NE(refusal(strip_with(item + ", " + item)).find("item 7"), std::string::npos);
+    EXPECT_NE(refusal(strip_with(R"({"id": 7, "demand": 0, )" + triangle)).find("demand"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"({"strip_height": 0, "items": [)" + item + "]}").find("strip_height"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"({"strip_height": 1e308, "items": [)" + item + "]}").find("strip_height"),
+              std::string::npos);
+    const std::string bin = R"({"id": 3, "stock": 1, "shape": {"type": "polygon", "data":
+        {"outer": [[0,0],[4,4],[4,0],[0,4],[0,0]], "inner": []}}})";
+    EXPECT_NE(refusal(R"({"bins": [)" + bin + R"(], "items": [)" + item + "]}").find("bin 3"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -307,6 +307,66 @@ TEST(Params, TakeANameThatLooksLikeANumber) {
     EXPECT_EQ(params_from_json(params).nesting.rotation, fab::Rotation::Fixed);
 }
 
+TEST(Params, TakeStockOfAnyOutline) {
+    const auto params = R"({"nesting": {"only_stock": true, "stock": [
+        {"id": "board-1", "width_mm": 300, "height_mm": 200, "quantity": null, "cost": 2.5},
+        {"id": "left", "material": "felt", "outline": [[10, 10], [90, 10], [60, 70]],
+         "holes": [[[50, 20], [60, 20], [55, 30]]], "defects": [[[30, 15], [31, 15], [31, 16]]],
+         "keep_out": [[[80, 10], [90, 10], [90, 12]]]}]}})"_json;
+    const fab::JobParams read = params_from_json(params);
+    ASSERT_EQ(read.nesting.stock.size(), 2U);
+    EXPECT_FALSE(read.nesting.stock[0].quantity.has_value());
+    const fab::StockItem& left = read.nesting.stock[1];
+    EXPECT_EQ(left.quantity, 1);
+    EXPECT_EQ(left.size.width_mm, 80.0);
+    EXPECT_EQ(left.outline.front(), Eigen::Vector2d(0.0, 0.0));
+    ASSERT_EQ(left.zones.size(), 3U);
+    EXPECT_EQ(left.zones[0].outline.front(), Eigen::Vector2d(40.0, 10.0));
+    EXPECT_EQ(left.zones[2].kind, fab::ZoneKind::KeepOut);
+    EXPECT_EQ(params_to_json(params_from_json(params_to_json(read))), params_to_json(read));
+}
+
+TEST(Params, TakeRotationsAsIntervalsForEachPiece) {
+    const auto params = R"({"nesting": {"rotation": [[-5, 5], 180],
+        "rotations": {"W12": [0, 90], "warp": "free"}}})"_json;
+    const fab::JobParams read = params_from_json(params);
+    ASSERT_TRUE(read.nesting.turns.has_value());
+    EXPECT_TRUE(read.nesting.turns->allows(3.0, 0.0));
+    EXPECT_FALSE(read.nesting.turns->allows(177.0, 0.0));
+    ASSERT_EQ(read.nesting.piece_turns.size(), 2U);
+    EXPECT_TRUE(read.nesting.piece_turns[1].turns.empty());
+    EXPECT_EQ(params_to_json(params_from_json(params_to_json(read))), params_to_json(read));
+}
+
+TEST(Params, RefuseWrongStockByFullPath) {
+    const auto stock = [](const std::string& entry) {
+        return refusal(R"({"nesting": {"stock": [)" + entry + "]}}");
+    };
+    EXPECT_THAT(stock("3"), StartsWith("nesting.stock[0]"));
+    EXPECT_THAT(stock(R"({"width_mm": 10, "height_mm": 10})"), StartsWith("nesting.stock[0].id:"));
+    EXPECT_THAT(stock(R"({"id": "a", "width_mm": 10})"), StartsWith("nesting.stock[0].width_mm:"));
+    EXPECT_THAT(stock(R"({"id": "a", "width_mm": -1, "height_mm": 5})"),
+                StartsWith("nesting.stock[0].width_mm:"));
+    EXPECT_THAT(stock(R"({"id": "a", "width_mm": 1e308, "height_mm": 5})"),
+                StartsWith("nesting.stock[0].width_mm:"));
+    EXPECT_THAT(stock(R"({"id": "a", "outline": [[0, 0], [9, 9], [9, 0], [0, 9]]})"),
+                StartsWith("nesting.stock[0].outline:"));
+    EXPECT_THAT(stock(R"({"id": "a", "width_mm": 9, "height_mm": 9, "holes": [[[0, 0], [1, 1]]]})"),
+                StartsWith("nesting.stock[0].holes[0]:"));
+    EXPECT_THAT(stock(R"({"id": "a", "width_mm": 9, "height_mm": 9, "quantity": -1})"),
+                StartsWith("nesting.stock[0].quantity:"));
+    EXPECT_THAT(stock(R"({"id": "a", "width_mm": 9, "height_mm": 9, "quantity": null})"),
+                StartsWith("nesting.stock[0].cost:"));
+    EXPECT_THAT(stock(R"({"id": "a", "width_mm": 9, "height_mm": 9},
+                         {"id": "a", "width_mm": 9, "height_mm": 9})"),
+                StartsWith("nesting.stock[1].id:"));
+    EXPECT_THAT(refusal(R"({"nesting": {"only_stock": true}})"), StartsWith("nesting.only_stock:"));
+    EXPECT_THAT(refusal(R"({"nesting": {"rotation": [[5, -5]]}})"),
+                StartsWith("nesting.rotation[0]:"));
+    EXPECT_THAT(refusal(R"({"nesting": {"rotations": {"W1": "sideways"}}})"),
+                StartsWith("nesting.rotations.W1:"));
+}
+
 TEST(ParseParams, RefusesWhatIsNoJson) {
     EXPECT_THAT(refusal("{"), StartsWith("parameters: no JSON: "));
     EXPECT_THAT(refusal(""), StartsWith("parameters: no JSON: "));
