@@ -18,9 +18,10 @@ namespace leafcutter::fab {
 
 namespace {
 
-constexpr double kStartShare = 0.15;   // Of all work: the first layouts,
-constexpr double kMixesShare = 0.4;    // cheaper mixes, where there may be some
-constexpr double kHidesShare = 0.75;   // (if all are irregular),
+constexpr double kStartShare = 0.15;  // Of all work: the first layouts,
+constexpr double kMixesShare = 0.4;   // cheaper mixes, where there may be some
+constexpr double kHidesShare = 0.9;   // (if all are irregular),
+constexpr double kLikeliest = 0.8;
 constexpr double kBriefShare = 0.125;  // and a short look at each of several sizes.
 constexpr std::size_t kMostTries = 4;  // Of mixes that came to nothing.
 
@@ -54,7 +55,7 @@ public:
         for (const std::vector<SheetRun>& runs : offers) {
             trials.push_back(first_of(runs, starting));
         }
-        done_ = kStartShare;
+        done_ = hides_ ? 0.0 : kStartShare;
         choose_start(trials);
         if ((problem_.kinds.size() > 1 || hides_) && !best_.kinds.empty()) {
             find_cheaper(hides_ ? kHidesShare : kMixesShare);
@@ -213,8 +214,8 @@ private:
             if (!mix || context_.stop.stop_requested()) {
                 return;
             }
-            // The first one is the likeliest: it gets half of what there is.
-            const double each = left / 2.0;
+            // The first one is the likeliest: of hides, which take long, by far.
+            const double each = left * (hides_ ? kLikeliest : 0.5);
             if (!try_mix(*mix, each)) {
                 failed.push_back(*mix);
                 left -= each;
