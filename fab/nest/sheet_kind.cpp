@@ -84,7 +84,9 @@ void add_fixed(Ring ring, SheetKind& kind) {
 }
 
 void add_outside(const StockItem& sheet, double inset_mm, SheetKind& kind) {
-    std::vector<Ring> rooms = inset(sheet.outline, inset_mm + kEdgeGuardMm);
+    // Never outwards: mitres there would let grown pieces lean into the notches of an outline,
+    // nearer to their inner corners than allowed.
+    std::vector<Ring> rooms = inset(sheet.outline, std::max(0.0, inset_mm) + kEdgeGuardMm);
     if (rooms.empty()) {
         refuse_too_small(sheet);
     }

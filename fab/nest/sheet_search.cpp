@@ -52,6 +52,7 @@ public:
         const std::vector<std::vector<SheetRun>> offers = first_offers(problem_);
         const double starting = kStartShare / static_cast<double>(2 * offers.size());
         std::vector<SheetTrial> trials;
+        trials.reserve(offers.size());
         for (const std::vector<SheetRun>& runs : offers) {
             trials.push_back(first_of(runs, starting));
         }

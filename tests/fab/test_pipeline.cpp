@@ -82,10 +82,10 @@ TEST(Weave, WritesEveryFileOfThePackage) {
             names.push_back(file.path);
         }
     }
-    std::vector<std::string> expected = {"report.json", "surface.ply", "quads.obj",  "quality.json",
-                                         "leaves.json", "strips.json", "weave.json", "layout.json",
-                                         "guide.html",  "guide.pdf",   "woven.stl",  "woven.obj",
-                                         "woven.mtl",   "woven.glb",   "strips.svg", "bill.csv"};
+    std::vector<std::string> expected = {
+        "report.json", "surface.ply", "quads.obj",  "quality.json", "leaves.json", "strips.json",
+        "weave.json",  "layout.json", "guide.html", "guide.pdf",    "woven.stl",   "woven.obj",
+        "woven.mtl",   "woven.glb",   "strips.svg", "bill.csv",     "stock.json"};
     for (int sheet = 1; sheet <= made.sheets; ++sheet) {
         for (const char* ending : {".svg", ".dxf", ".gcode"}) {
             expected.push_back(fmt::format("sheets/sheet-{:03}{}", sheet, ending));

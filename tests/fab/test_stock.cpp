@@ -151,6 +151,27 @@ TEST(Stock, GoesAroundHolesDefectsAndClamps) {
     EXPECT_THROW(prove_layout(onto_the_defect, pointers(pieces), options), geometry::Error);
 }
 
+// Where spacing is more than twice the margin, pieces that lean into a notch must not come too near
+// to its inner corner.
+TEST(Stock, KeepsTheMarginAtTheInnerCornersOfNotches) {
+    std::vector<Piece> pieces = blocks(3, 28.0, 20.0);
+    StockItem sheet;
+    sheet.id = "star";
+    sheet.outline = {{0.0, 0.0},   {100.0, 0.0}, {100.0, 60.0}, {52.0, 60.0},
+                     {50.0, 22.0}, {48.0, 60.0}, {0.0, 60.0}};
+    move_to_origin(sheet);
+    NestOptions options = tight(4'000);
+    options.rotation = Rotation::Free;
+    options.spacing_mm = 3.0;
+    for (std::uint32_t seed = 1; seed <= 30; ++seed) {
+        options.seed = seed;
+        Layout layout;
+        ASSERT_NO_THROW(layout = nest(pointers(pieces), {&sheet, 1}, options)) << seed;
+        EXPECT_NO_THROW(prove_layout(layout, pointers(pieces), options));
+        EXPECT_FALSE(layout.sheets.empty());
+    }
+}
+
 TEST(Stock, RefusesWhatIsNoSheetByItsName) {
     const std::vector<Piece> pieces = blocks(1, 10.0, 10.0);
     const auto refusal = [&](StockItem sheet) {
