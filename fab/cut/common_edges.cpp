@@ -34,7 +34,7 @@ std::vector<Ring> rings_of(const std::vector<CutPath>& contours) {
 // Corners of contours, those that fall together made one.
 class Nodes {
 public:
-    explicit Nodes(const std::vector<Ring>& rings) : rings_(rings) {
+    explicit Nodes(const std::vector<Ring>& rings) {
         std::size_t count = 0;
         for (const Ring& ring : rings) {
             first_.push_back(count);
@@ -94,7 +94,6 @@ private:
         return node;
     }
 
-    const std::vector<Ring>& rings_;
     std::vector<std::size_t> first_;
     std::vector<std::size_t> parent_;
     std::vector<std::vector<std::size_t>> contours_;  // Of each root.
