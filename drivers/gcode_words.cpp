@@ -1,6 +1,8 @@
 #include "drivers/gcode_words.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 
 namespace leafcutter::drivers {
 
@@ -75,6 +77,12 @@ GcodeWords split_words(std::string_view stripped) {
         result.words.push_back({letter, *value});
     }
     return result;
+}
+
+int whole_part(double value) {
+    constexpr std::numeric_limits<int> kInt;
+    return static_cast<int>(
+        std::clamp(value, static_cast<double>(kInt.min()), static_cast<double>(kInt.max())));
 }
 
 std::string without_inline_word(std::string_view stripped) {

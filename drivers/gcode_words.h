@@ -24,6 +24,9 @@ enum class WordFault { LetterExpected, BadNumber };
 // A plain decimal number at `at`, which moves behind it: Grbl knows no exponent.
 std::optional<double> read_decimal(std::string_view text, std::size_t& at);
 
+// Cut off behind the point; the largest or least int where it is beyond that.
+int whole_part(double value);
+
 struct GcodeWords {
     std::vector<GcodeWord> words;
     std::optional<WordFault> fault;  // Set: `words` ends before the faulty one.

@@ -100,7 +100,7 @@ int GcodeInterpreter::check(Block& block) {
         block.modal.feed_mm_per_min = 0.0;
     }
     block.modal.power_s = block.s.value_or(modal_.power_s);
-    block.modal.tool = static_cast<int>(block.t.value_or(modal_.tool));
+    block.modal.tool = whole_part(block.t.value_or(modal_.tool));
     if (block.tool_offset == 43 &&
         !(block.axis_given[2] && !block.axis_given[0] && !block.axis_given[1])) {
         return grbl_error::kToolOffsetAxis;
@@ -289,7 +289,7 @@ void GcodeInterpreter::set_offsets(const Block& block) {
     }
     const bool stored = block.non_modal == 10;
     const bool from_here = !stored || std::trunc(*block.l) == 20.0;
-    const int chosen = static_cast<int>(block.p.value_or(0.0));
+    const int chosen = whole_part(block.p.value_or(0.0));
     const int system = stored && chosen != 0 ? 53 + chosen : modal_.coordinates;
     Axes& offset = stored ? coordinates_.at(system) : g92_mm_;
     const Axes& other = stored ? g92_mm_ : coordinates_.at(modal_.coordinates);

@@ -34,7 +34,7 @@ struct CommandNumber {
 
 CommandNumber split_number(double value) {
     const double whole = std::trunc(value);
-    return {static_cast<int>(whole), static_cast<int>(std::lround(100.0 * (value - whole)))};
+    return {whole_part(whole), whole_part(std::round(100.0 * (value - whole)))};
 }
 
 std::optional<Group> group_of_g(int whole) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "drivers/gcode_words.h"
 #include "drivers/sim/grbl_machine.h"
 
 namespace leafcutter::drivers {
@@ -187,7 +188,7 @@ std::string state_name(GrblMachine::State state, bool standing) {
 }  // namespace
 
 std::string GrblMachine::status_report() {
-    const int mask = static_cast<int>(settings_.get(10));
+    const int mask = whole_part(settings_.get(10));
     const double unit = settings_.is_on(13) ? 1.0 / 25.4 : 1.0;
     const int digits = settings_.is_on(13) ? 4 : 3;
     const bool machine_frame = (mask & 1) != 0;

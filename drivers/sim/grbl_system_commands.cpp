@@ -202,7 +202,7 @@ int GrblMachine::set_setting(std::string_view line) {
     if (at != line.size() || *number > 255.0) {
         return kBadStatement;
     }
-    const int error = settings_.set(static_cast<int>(*number), *value);
+    const int error = settings_.set(whole_part(*number), *value);
     if (error == 0) {
         apply_overrides();
         write_eeprom();
@@ -247,7 +247,7 @@ bool GrblMachine::beyond_travel(const Axes& target_mm) const {
 }
 
 void GrblMachine::finish_home() {
-    const int to_negative = static_cast<int>(settings_.get(23));
+    const int to_negative = whole_part(settings_.get(23));
     const double pull_off = settings_.get(27);
     Axes position{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
