@@ -95,7 +95,7 @@ class CutShort(unittest.TestCase):
                 daemon = Daemon(folder, free_port())
                 try:
                     cut = json.loads(daemon.call("GET", path)[1])
-                    self.assertEqual((cut["state"], cut["actions"]), ("interrupted", []))
+                    self.assertEqual((cut["state"], cut["actions"]), ("interrupted", ["finish"]))
                     self.assertIn("cut this sheet again", cut["reason"])
                 finally:
                     daemon.stop()
