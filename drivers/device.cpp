@@ -71,14 +71,31 @@ std::optional<std::string_view> query_of(std::string_view uri, std::string_view 
     return rest.substr(std::min<std::size_t>(rest.size(), 1));
 }
 
-// "power_cap=PERCENT" is taken out of the query; what is left goes to the transport.
+// What of a query is the session's is taken out of it; the rest goes to the transport.
 struct GrblAddress {
     std::string transport;
-    double power_cap_percent = 100.0;
+    GrblOptions options;
 };
 
+struct NumberRange {
+    double least = 0.0;
+    double most = 0.0;
+};
+
+double number_in(std::string_view pair, const NumberRange& range, std::string_view address) {
+    const std::size_t equals = pair.find('=');
+    const char* const last = pair.data() + pair.size();
+    double value = 0.0;
+    const auto [stop, fault] = std::from_chars(pair.data() + equals + 1, last, value);
+    if (fault != std::errc{} || stop != last || !(value >= range.least && value <= range.most)) {
+        throw std::invalid_argument(fmt::format("device \"{}\": {} must be a number from {} to {}",
+                                                address, pair.substr(0, equals), range.least,
+                                                range.most));
+    }
+    return value;
+}
+
 GrblAddress split_grbl_address(std::string_view address) {
-    constexpr std::string_view kKey = "power_cap=";
     const std::size_t question = std::min(address.find('?'), address.size());
     GrblAddress result;
     std::string query;
@@ -86,26 +103,22 @@ GrblAddress split_grbl_address(std::string_view address) {
         const std::size_t end = std::min(address.find('&', at), address.size());
         const std::string_view pair = address.substr(at, end - at);
         at = end + 1;
-        if (!starts_with(pair, kKey)) {
+        if (starts_with(pair, "power_cap=")) {
+            result.options.power_cap_percent = number_in(pair, {0.1, 100.0}, address);
+        } else if (starts_with(pair, "poll_ms=")) {
+            const double interval_ms = number_in(pair, {100.0, 1000.0}, address);
+            result.options.poll_interval = std::chrono::milliseconds(static_cast<int>(interval_ms));
+        } else {
             query += fmt::format("{}{}", query.empty() ? "?" : "&", pair);
-            continue;
-        }
-        const std::string_view value = pair.substr(kKey.size());
-        const char* const last = value.data() + value.size();
-        const auto [stop, fault] = std::from_chars(value.data(), last, result.power_cap_percent);
-        const bool fits = result.power_cap_percent > 0.0 && result.power_cap_percent <= 100.0;
-        if (fault != std::errc{} || stop != last || !fits) {
-            throw std::invalid_argument(
-                fmt::format("device \"{}\": power_cap must be a percentage above 0", address));
         }
     }
     result.transport = std::string(address.substr(0, question)) + query;
     return result;
 }
 
-SessionDevice::MakeSession grbl_session(double power_cap_percent) {
-    return [power_cap_percent](Session::Time now) -> std::unique_ptr<Session> {
-        return std::make_unique<GrblSession>(now, power_cap_percent);
+SessionDevice::MakeSession grbl_session(const GrblOptions& options) {
+    return [options](Session::Time now) -> std::unique_ptr<Session> {
+        return std::make_unique<GrblSession>(now, options);
     };
 }
 
@@ -133,15 +146,14 @@ std::unique_ptr<Device> open_device(std::string_view uri) {
     constexpr std::string_view kGrbl = "grbl:";
     if (starts_with(uri, kGrbl)) {
         const GrblAddress address = split_grbl_address(uri.substr(kGrbl.size()));
-        return attached(uri, open_transport(address.transport),
-                        grbl_session(address.power_cap_percent));
+        return attached(uri, open_transport(address.transport), grbl_session(address.options));
     }
     if (const auto query = query_of(uri, "sim:grbl")) {
         const GrblAddress address = split_grbl_address(fmt::format("?{}", *query));
         const std::string_view rest =
             std::string_view(address.transport)
                 .substr(std::min<std::size_t>(1, address.transport.size()));
-        return attached(uri, open_simulated_grbl(rest), grbl_session(address.power_cap_percent));
+        return attached(uri, open_simulated_grbl(rest), grbl_session(address.options));
     }
     if (const auto query = query_of(uri, "sim:marlin")) {
         return attached(uri, open_simulated_marlin(*query), marlin_session);

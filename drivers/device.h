@@ -134,7 +134,8 @@ public:
 // smoothie: alike, lihuiyu:usb?bus=1&address=4 (lihuiyu/address.h), sim:grbl, sim:marlin,
 // sim:smoothie, sim:lihuiyu. The sim: ones start a simulated machine of their own; `?burn=FILE`
 // keeps its beam log. With "power_cap=PERCENT" a Grbl device refuses programs of a higher S than
-// that part of $30. Throws LinkLost, or std::invalid_argument for a URI it can't read.
+// that part of $30; "poll_ms=100" to 1000 asks it for its status more or less often than 5 times a
+// second. Throws LinkLost, or std::invalid_argument for a URI it can't read.
 std::unique_ptr<Device> open_device(std::string_view uri);
 
 // Whether a URI begins like one that open_device() takes; opens nothing.
