@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "drivers/gcode_words.h"
+
 namespace leafcutter::drivers {
 
 namespace {
@@ -396,7 +398,7 @@ MachineFacts GrblSession::facts() const {
     // that is the low one ($23).
     if (settings_value(20, 0.0) != 0.0 && work_offset_) {
         std::array<double, 2> origin{};
-        const int homes_low = static_cast<int>(settings_value(23, 0.0));
+        const int homes_low = whole_part(settings_value(23, 0.0));
         const bool forced = firmware_.build_options().find('Z') != std::string::npos;
         for (std::size_t axis = 0; axis < 2; ++axis) {
             const bool positive = forced && (homes_low & (1 << axis)) != 0;
