@@ -171,7 +171,7 @@ function FoliationChoices() {
 }
 
 export function NewJob() {
-  useEffect(() => void attempt(loadMaterials), []);
+  useEffect(() => void attempt(() => loadMaterials()), []);
   const now = draft.value;
   const fault = draftFault(now);
   return (

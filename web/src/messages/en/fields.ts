@@ -1,0 +1,3 @@
+// In English.
+
+export const fields = {};

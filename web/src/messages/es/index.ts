@@ -1,0 +1,4 @@
+import { en } from '../en/index.ts';
+import type { Messages } from '../en/index.ts';
+
+export const es: Messages = en;
