@@ -11,7 +11,10 @@ export const draft = {
   },
   draft: {
     title: 'New weave',
+    again: (name: string) => `Weave ${name} again`,
     name: 'Name',
+    units: 'Size',
+    unitNames: { longest: 'By the longest side', mm: 'The file is in millimetres' },
     size: 'Longest side',
     strip: 'Strip width',
     pattern: 'Weave pattern',
@@ -22,7 +25,7 @@ export const draft = {
       title: 'How the surface is laid out',
       mode: 'Layout',
       pants: 'Cut into pairs of pants',
-      pantsNames: { reeb: 'Along a function', 'handle-loops': 'Through the handles', 'tunnel-loops': 'Around the tunnels' },
+      pantsNames: { reeb: 'Along a function', 'handle-loops': 'Through the handles', 'tunnel-loops': 'Around the tunnels', user: 'Along my loops' },
       sweep: 'Function',
       sweepNames: {
         auto: 'The best of all',
@@ -36,7 +39,6 @@ export const draft = {
       punctureNames: { auto: 'Where cells get far too large', none: 'Never' },
       components: 'Separate parts',
       componentNames: { each: 'Weave each', largest: 'Only the largest' },
-      near: 'Singular points near vertices',
     },
     submit: (files: number) => (files === 1 ? 'Weave it' : `Weave ${files} shapes`),
     cancel: 'Cancel',
@@ -45,7 +47,8 @@ export const draft = {
       'longest-side': 'The longest side must be a number above 0.',
       'strip-width': 'The strip width must be a number above 0.',
       'strip-too-wide': 'The strips are too wide for this size: at most a third of the longest side.',
-      near: 'Places of singular points are different vertices by their numbers in the file, such as 12, 1895.',
+      picks: 'Places are different vertices by their numbers in the file, such as 12, 1895.',
+      more: 'A value is out of its range.',
     },
   },
   patterns: {

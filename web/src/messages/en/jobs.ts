@@ -29,6 +29,8 @@ export const jobs = {
   stagesLabel: 'Progress of the computation',
   job: {
     back: 'All jobs',
+    change: 'Change and weave again',
+    compare: 'Compare with',
     missing: 'There is no such job.',
     cancel: 'Cancel',
     remove: 'Remove',
@@ -65,6 +67,7 @@ export const jobs = {
       'strips.json': 'Strips',
       'weave.json': 'Weave',
       'layout.json': 'Layout',
+      'stock.json': 'Stock after the cut',
     } as Readonly<Record<string, string>>,
     kinds: { svg: 'SVG', dxf: 'DXF', gcode: 'G-code' } as Readonly<Record<string, string>>,
     loading: 'Loading the files',
