@@ -146,7 +146,7 @@ export function createPickScene(canvas: HTMLCanvasElement, mesh: Welded): PickSc
       }
       const chosen = lines(path, model.segments(loops.flatMap((number) => mesh.loops[number] ?? [])));
       if (chosen !== null) marked.push(chosen);
-      stage.scene.add(...marked);
+      if (marked.length > 0) stage.scene.add(...marked);
       stage.draw();
     },
     turn: (dx, dy) =>
