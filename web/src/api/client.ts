@@ -83,6 +83,11 @@ export async function recomputeJob(id: string, params: Readonly<Record<string, u
   return sendAndRead('POST', `/jobs/${id}/recompute`, { params }, readJob);
 }
 
+// Single pieces or whole strips again, as a job that is ready to be cut.
+export async function recutJob(id: string, pieces: readonly string[]): Promise<Job> {
+  return sendAndRead('POST', `/jobs/${id}/recut`, { pieces }, readJob);
+}
+
 export async function queueCut(job: string, device: string, sheets: readonly number[]): Promise<void> {
   await send('POST', `/jobs/${job}/cuts`, { device, sheets });
 }

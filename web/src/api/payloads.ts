@@ -88,7 +88,6 @@ export const readJob: Reader<Job> = (value, path) => {
     sheets: get('sheets', optional(list(readSheet), [])),
     cuts: get('cuts', optional(names, [])),
     priority: get('priority', optional(number, 0)),
-    position: get('position', optional(number, null)),
     actions: get('actions', optional(names, [])),
   };
 };

@@ -40,7 +40,6 @@ export interface Job {
   readonly sheets: readonly JobSheet[];
   readonly cuts: readonly string[];
   readonly priority: number;
-  readonly position: number | null; // In the queue, from 1.
   readonly actions: readonly string[];
 }
 

@@ -1,6 +1,6 @@
 // Machines, ports, materials and stock, as they are looked after.
 
-import { flag, list, number, optional, point, type Reader, record, text } from '../lib/check.ts';
+import { fields, flag, list, number, optional, point, type Reader, record, text } from '../lib/check.ts';
 import { read, send } from './client.ts';
 import type { Point } from './package_files.ts';
 import { listUnder } from './payloads.ts';
@@ -107,12 +107,17 @@ export async function removeStock(id: string): Promise<void> {
 export interface QueueState {
   readonly paused: boolean;
   readonly reason: string;
+  readonly next: readonly string[]; // Jobs, in the order in which they will be computed.
 }
 
 export const getQueue = (): Promise<QueueState> =>
   read('/queue', (value, path) => {
     const get = record(value, path);
-    return { paused: get('paused', optional(flag, false)), reason: get('reason', optional(text, '')) };
+    return {
+      paused: get('paused', optional(flag, false)),
+      reason: get('reason', optional(text, '')),
+      next: get('next', optional(list((one, at) => record(one, at)('id', text)), [])),
+    };
   });
 
 export async function pauseQueue(paused: boolean): Promise<void> {
@@ -137,3 +142,37 @@ export const getVersion = (): Promise<Version> =>
     const get = record(value, path);
     return { name: get('name', optional(text, '')), version: get('version', optional(text, '')) };
   });
+
+// What a machine's controller keeps of itself.
+export interface MachineSetting {
+  readonly key: string;
+  readonly value: number;
+  readonly name: string;
+}
+
+const readSetting: Reader<MachineSetting> = (value, path) => {
+  const get = record(value, path);
+  return { key: get('key', text), value: get('value', number), name: get('name', optional(text, '')) };
+};
+
+export const listSettings = (device: string): Promise<readonly MachineSetting[]> =>
+  read(`/devices/${encodeURIComponent(device)}/settings`, listUnder('settings', readSetting));
+
+// A set of job parameters under a name.
+export interface Preset {
+  readonly id: string;
+  readonly name: string;
+  readonly params: Readonly<Record<string, unknown>>;
+}
+
+const readPreset: Reader<Preset> = (value, path) => {
+  const get = record(value, path);
+  const id = get('id', text);
+  return { id, name: get('name', optional(text, '')) || id, params: get('params', optional(fields, {})) };
+};
+
+export const listPresets = (): Promise<readonly Preset[]> => read('/presets', listUnder('presets', readPreset));
+
+export async function putPreset(id: string, name: string, params: Preset['params']): Promise<void> {
+  await send('PUT', `/presets/${encodeURIComponent(id)}`, { name, params });
+}

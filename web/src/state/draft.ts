@@ -69,6 +69,7 @@ export type DraftAction =
   | { readonly type: 'rename'; readonly key: number; readonly name: string }
   | { readonly type: 'set'; readonly values: Partial<Omit<Draft, 'files' | 'again'>> }
   | { readonly type: 'again'; readonly job: string; readonly name: string; readonly params: Params }
+  | { readonly type: 'preset'; readonly params: Params }
   | { readonly type: 'clear' };
 
 type Params = Readonly<Record<string, unknown>>;
@@ -96,6 +97,8 @@ export function reduceDraft(draft: Draft, action: DraftAction): Draft {
       return { ...draft, ...action.values };
     case 'again':
       return { ...draftOf(action.params), again: { job: action.job, name: action.name } };
+    case 'preset':
+      return { ...draftOf(action.params), files: draft.files, again: draft.again, picks: draft.picks };
     case 'clear':
       return { ...draft, files: [], again: null, picks: kNoPicks };
   }

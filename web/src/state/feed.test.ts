@@ -20,7 +20,6 @@ function job(id: string, over: Partial<Job> = {}): Job {
     sheets: [],
     cuts: [],
     priority: 0,
-    position: null,
     actions: [],
     ...over,
   };

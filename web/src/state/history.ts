@@ -3,11 +3,15 @@
 import type { Cut, Job, JobState } from '../api/types.ts';
 import { isOver } from './feed.ts';
 
-// Those that wait or compute, in the order in which they will be.
-export function waitingJobs(jobs: ReadonlyMap<string, Job>): readonly Job[] {
+// Those that wait or compute, in the order in which they will be: `next` is what the daemon says of it.
+export function waitingJobs(jobs: ReadonlyMap<string, Job>, next: readonly string[]): readonly Job[] {
+  const place = (job: Job): number => {
+    const at = next.indexOf(job.id);
+    return at < 0 ? Infinity : at;
+  };
   const order = (a: Job, b: Job): number =>
     Number(b.state === 'computing') - Number(a.state === 'computing') ||
-    (a.position ?? Infinity) - (b.position ?? Infinity) ||
+    (place(a) === place(b) ? 0 : place(a) - place(b)) ||
     b.priority - a.priority ||
     a.createdAt.localeCompare(b.createdAt) ||
     a.id.localeCompare(b.id);

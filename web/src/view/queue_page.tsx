@@ -1,6 +1,6 @@
 // What is to be computed and cut, in its order, and what was.
 
-import { useState } from 'preact/hooks';
+import { useEffect, useState } from 'preact/hooks';
 
 import { recomputeJob } from '../api/client.ts';
 import type { Cut, Job, JobState } from '../api/types.ts';
@@ -25,10 +25,11 @@ function JobLink(props: { readonly job: Job }) {
 }
 
 // Order within the queue is the daemon's to keep: these only ask for it.
-function QueuedRow(props: { readonly job: Job; readonly at: number; readonly last: boolean }) {
-  const { job, at, last } = props;
-  const can = job.state === 'queued' && job.position !== null;
-  const move = (position: number): void => void attempt(() => moveJob(job.id, { position }));
+function QueuedRow(props: { readonly job: Job; readonly at: number; readonly next: readonly string[]; readonly onMoved: () => void }) {
+  const { job, at, next, onMoved } = props;
+  const position = next.indexOf(job.id) + 1; // 0: it does not wait.
+  const can = job.state === 'queued' && position > 0;
+  const move = (to: number): void => void attempt(() => moveJob(job.id, { position: to })).then(onMoved);
   return (
     <li class="queue-row">
       <span class="queue-number">{count(at + 1)}</span>
@@ -40,13 +41,13 @@ function QueuedRow(props: { readonly job: Job; readonly at: number; readonly las
       )}
       {can && (
         <span class="queue-moves">
-          <button type="button" class="plain" aria-label={t.queue.first(job.name)} disabled={job.position === 1} onClick={() => move(1)}>
+          <button type="button" class="plain" aria-label={t.queue.first(job.name)} disabled={position === 1} onClick={() => move(1)}>
             <Icon name="first" />
           </button>
-          <button type="button" class="plain" aria-label={t.queue.up(job.name)} disabled={job.position === 1} onClick={() => move((job.position ?? 2) - 1)}>
+          <button type="button" class="plain" aria-label={t.queue.up(job.name)} disabled={position === 1} onClick={() => move(position - 1)}>
             <Icon name="up" />
           </button>
-          <button type="button" class="plain" aria-label={t.queue.down(job.name)} disabled={last} onClick={() => move((job.position ?? 0) + 1)}>
+          <button type="button" class="plain" aria-label={t.queue.down(job.name)} disabled={position === next.length} onClick={() => move(position + 1)}>
             <Icon name="down" />
           </button>
         </span>
@@ -57,7 +58,10 @@ function QueuedRow(props: { readonly job: Job; readonly at: number; readonly las
 
 function ComputeQueue() {
   const [queue, load] = useCall(getQueue);
-  const jobs = waitingJobs(feed.value.jobs);
+  const next = queue.state === 'there' ? queue.value.next : [];
+  const jobs = waitingJobs(feed.value.jobs, next);
+  const waiting = jobs.filter((job) => job.state === 'queued').map((job) => `${job.id}/${job.version}`).join();
+  useEffect(() => void load(), [waiting]);
   const paused = queue.state === 'there' && queue.value.paused;
   const toggle = async (): Promise<void> => {
     if (await attempt(() => pauseQueue(!paused))) await load();
@@ -76,7 +80,7 @@ function ComputeQueue() {
       ) : (
         <ol class="queue-list">
           {jobs.map((job, index) => (
-            <QueuedRow key={job.id} job={job} at={index} last={index === jobs.length - 1} />
+            <QueuedRow key={job.id} job={job} at={index} next={next} onMoved={() => void load()} />
           ))}
         </ol>
       )}

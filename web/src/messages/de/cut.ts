@@ -72,6 +72,8 @@ export const cut = {
     bedHeight: 'Betttiefe',
     autoStart: 'Schnitte starten, ohne jemanden zu fragen',
     forget: 'Diese Maschine vergessen',
+    controller: 'Einstellungen der Steuerung',
+    noController: 'Diese Maschine nennt keine.',
     console: 'Konsole',
     consoleEmpty: 'Noch nichts gesagt.',
     consoleLine: 'Eine Zeile an die Maschine',

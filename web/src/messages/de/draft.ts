@@ -12,6 +12,13 @@ export const draft = {
   draft: {
     title: 'Neues Gewebe',
     again: (name: string) => `${name} noch einmal weben`,
+    preset: {
+      label: 'Voreinstellung',
+      choose: 'Eine wählen',
+      keep: 'Als Voreinstellung behalten',
+      name: 'Name der Voreinstellung',
+      kept: (name: string) => `Als ${name} behalten.`,
+    },
     name: 'Name',
     units: 'Größe',
     unitNames: { longest: 'Nach der längsten Seite', mm: 'Die Datei ist in Millimetern' },

@@ -36,6 +36,8 @@ export const result = {
     family: { weft: 'Schuss', warp: 'Kette' },
     about: (family: string, cells: number, sheets: string) => `${family}, ${cells} Zellen, ${sheets}`,
     sheets: (ids: readonly number[]) => (ids.length === 1 ? `Bogen ${ids[0]}` : `Bögen ${ids.join(', ')}`),
+    recut: 'Diesen Streifen neu schneiden',
+    recutNow: 'Neu schneiden?',
     hint: 'Hier oder auf einem Bogen auf einen Streifen zeigen',
   },
   sheets: {

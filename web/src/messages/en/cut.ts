@@ -72,6 +72,8 @@ export const cut = {
     bedHeight: 'Bed height',
     autoStart: 'Start cuts without asking an operator',
     forget: 'Forget this machine',
+    controller: 'Controller settings',
+    noController: 'This machine lists none.',
     console: 'Console',
     consoleEmpty: 'Nothing said yet.',
     consoleLine: 'One line to the machine',

@@ -12,6 +12,13 @@ export const draft = {
   draft: {
     title: 'New weave',
     again: (name: string) => `Weave ${name} again`,
+    preset: {
+      label: 'Preset',
+      choose: 'Choose one',
+      keep: 'Keep as preset',
+      name: 'Name of the preset',
+      kept: (name: string) => `Kept as ${name}.`,
+    },
     name: 'Name',
     units: 'Size',
     unitNames: { longest: 'By the longest side', mm: 'The file is in millimetres' },

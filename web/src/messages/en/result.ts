@@ -36,6 +36,8 @@ export const result = {
     family: { weft: 'Weft', warp: 'Warp' },
     about: (family: string, cells: number, sheets: string) => `${family}, ${cells} cells, ${sheets}`,
     sheets: (ids: readonly number[]) => (ids.length === 1 ? `sheet ${ids[0]}` : `sheets ${ids.join(', ')}`),
+    recut: 'Cut this strip again',
+    recutNow: 'Cut again?',
     hint: 'Point at a strip here or on a sheet',
   },
   sheets: {

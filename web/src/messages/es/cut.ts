@@ -72,6 +72,8 @@ export const cut = {
     bedHeight: 'Fondo de la mesa',
     autoStart: 'Empezar cortes sin preguntar a nadie',
     forget: 'Olvidar esta máquina',
+    controller: 'Ajustes del controlador',
+    noController: 'Esta máquina no da ninguno.',
     console: 'Consola',
     consoleEmpty: 'Aún no ha dicho nada.',
     consoleLine: 'Una línea para la máquina',

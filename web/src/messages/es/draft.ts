@@ -12,6 +12,13 @@ export const draft = {
   draft: {
     title: 'Nuevo tejido',
     again: (name: string) => `Tejer ${name} otra vez`,
+    preset: {
+      label: 'Preajuste',
+      choose: 'Elija uno',
+      keep: 'Guardar como preajuste',
+      name: 'Nombre del preajuste',
+      kept: (name: string) => `Guardado como ${name}.`,
+    },
     name: 'Nombre',
     units: 'Tamaño',
     unitNames: { longest: 'Por el lado más largo', mm: 'El archivo está en milímetros' },

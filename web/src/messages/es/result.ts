@@ -36,6 +36,8 @@ export const result = {
     family: { weft: 'Trama', warp: 'Urdimbre' },
     about: (family: string, cells: number, sheets: string) => `${family}, ${cells} celdas, ${sheets}`,
     sheets: (ids: readonly number[]) => (ids.length === 1 ? `hoja ${ids[0]}` : `hojas ${ids.join(', ')}`),
+    recut: 'Cortar de nuevo esta tira',
+    recutNow: '¿Cortar de nuevo?',
     hint: 'Señale una tira aquí o en una hoja',
   },
   sheets: {

@@ -72,6 +72,8 @@ export const cut = {
     bedHeight: 'Profondeur du lit',
     autoStart: 'Démarrer les découpes sans demander',
     forget: 'Oublier cette machine',
+    controller: 'Réglages du contrôleur',
+    noController: 'Cette machine n’en donne pas.',
     console: 'Console',
     consoleEmpty: 'Rien de dit pour l’instant.',
     consoleLine: 'Une ligne à la machine',

@@ -12,6 +12,13 @@ export const draft = {
   draft: {
     title: 'Nouveau tissage',
     again: (name: string) => `Tisser ${name} à nouveau`,
+    preset: {
+      label: 'Préréglage',
+      choose: 'En choisir un',
+      keep: 'Garder comme préréglage',
+      name: 'Nom du préréglage',
+      kept: (name: string) => `Gardé sous ${name}.`,
+    },
     name: 'Nom',
     units: 'Taille',
     unitNames: { longest: 'D’après le plus grand côté', mm: 'Le fichier est en millimètres' },

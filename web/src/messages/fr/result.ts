@@ -36,6 +36,8 @@ export const result = {
     family: { weft: 'Trame', warp: 'Chaîne' },
     about: (family: string, cells: number, sheets: string) => `${family}, ${cells} cellules, ${sheets}`,
     sheets: (ids: readonly number[]) => (ids.length === 1 ? `feuille ${ids[0]}` : `feuilles ${ids.join(', ')}`),
+    recut: 'Redécouper cette bande',
+    recutNow: 'Redécouper ?',
     hint: 'Désignez une bande ici ou sur une feuille',
   },
   sheets: {

@@ -72,6 +72,8 @@ export const cut = {
     bedHeight: '床面深度',
     autoStart: '无需询问即开始切割',
     forget: '移除此机器',
+    controller: '控制器设置',
+    noController: '此机器未提供。',
     console: '控制台',
     consoleEmpty: '暂无输出。',
     consoleLine: '发送一行到机器',

@@ -12,6 +12,13 @@ export const draft = {
   draft: {
     title: '新建编织',
     again: (name: string) => `重新编织 ${name}`,
+    preset: {
+      label: '预设',
+      choose: '选择预设',
+      keep: '存为预设',
+      name: '预设名称',
+      kept: (name: string) => `已存为 ${name}。`,
+    },
     name: '名称',
     units: '尺寸',
     unitNames: { longest: '按最长边', mm: '文件单位为毫米' },

@@ -36,6 +36,8 @@ export const result = {
     family: { weft: '纬', warp: '经' },
     about: (family: string, cells: number, sheets: string) => `${family}，${cells} 个单元，${sheets}`,
     sheets: (ids: readonly number[]) => (ids.length === 1 ? `板 ${ids[0]}` : `板 ${ids.join(', ')}`),
+    recut: '重新切割此条带',
+    recutNow: '重新切割？',
     hint: '在此处或板上指向一条条带',
   },
   sheets: {

@@ -17,6 +17,7 @@ import { EstimateLine } from './estimate_line.tsx';
 import { FoliationChoices } from './foliation_choices.tsx';
 import { MeshFacts } from './mesh_facts.tsx';
 import { MoreFields } from './more_fields.tsx';
+import { PresetPicker } from './preset_picker.tsx';
 import { PicksPanel } from './picks_panel.tsx';
 
 const set = (values: Partial<Omit<Draft, 'files' | 'again'>>): void => changeDraft({ type: 'set', values });
@@ -172,6 +173,7 @@ export function NewJob() {
           return <FileRow key={entry.key} entry={entry} looked={one} scale={scaleFor(one, now)} />;
         })}
       </ul>
+      <PresetPicker />
       <PatternPicker />
       <Measures fault={fault} />
       <EstimateLine draft={now} looks={looks.value} />

@@ -14,6 +14,7 @@ import { Bar, Chip } from '../controls.tsx';
 import { Icon } from '../icons.tsx';
 import { stop } from '../stop_button.tsx';
 import { Console } from './console.tsx';
+import { ControllerSettings } from './controller_settings.tsx';
 import { JogPad } from './jog_pad.tsx';
 import { MachineForm } from './machine_form.tsx';
 import { Overrides } from './overrides.tsx';
@@ -100,7 +101,6 @@ function Body(props: { readonly device: Device }) {
 
 function Commands(props: { readonly device: Device }) {
   const { device } = props;
-  const connected = isConnected(device);
   return (
     <div class="buttons">
       {kCommands
@@ -110,11 +110,6 @@ function Commands(props: { readonly device: Device }) {
             {t.machines.commands[command]}
           </button>
         ))}
-      {connected && (
-        <button type="button" class="button stop-one" onClick={() => void stop(device)}>
-          {t.stop.button}
-        </button>
-      )}
     </div>
   );
 }
@@ -129,6 +124,11 @@ export function MachineCard(props: { readonly device: Device }) {
       <header class="panel-head">
         <h2>{device.name}</h2>
         <span class="machine-head">
+          {isConnected(device) && (
+            <button type="button" class="button small stop-one" aria-label={`${t.stop.button}: ${device.name}`} onClick={() => void stop(device)}>
+              {t.stop.button}
+            </button>
+          )}
           <Chip kind={`device-${status.state}`}>{t.machines.states[status.state] ?? status.state}</Chip>
           {isAdmin.value && (
             <button type="button" class="plain" aria-label={t.machines.settingsOf(device.name)} onClick={() => setOpen(true)}>
@@ -142,6 +142,7 @@ export function MachineCard(props: { readonly device: Device }) {
       <CurrentCut device={device} />
       <Commands device={device} />
       {isConnected(device) && <Console device={device} />}
+      {isConnected(device) && <ControllerSettings device={device} />}
       <p class="quiet machine-about">{about.filter((word) => word !== '').join(' · ')}</p>
       {open && <MachineForm device={device} onClose={() => setOpen(false)} />}
     </li>

@@ -8,13 +8,21 @@ import { attempt } from '../../state/store.ts';
 
 const kNames = ['feed', 'rapid', 'power'] as const;
 const kStep = 10;
+// A controller knows three speeds for moves without beam.
+const kRapids: readonly number[] = [25, 50, 100];
+
+function next(name: (typeof kNames)[number], now: number, by: 1 | -1): number {
+  if (name !== 'rapid') return Math.min(200, Math.max(10, now + by * kStep));
+  const at = kRapids.findIndex((value) => value >= now);
+  return kRapids[Math.min(kRapids.length - 1, Math.max(0, (at < 0 ? kRapids.length - 1 : at) + by))] ?? 100;
+}
 
 export function Overrides(props: { readonly device: Device }) {
   const { device } = props;
   const { overridePercent } = device.status;
-  if (!device.actions.includes('overrides') || overridePercent.length < 3) return null;
+  if (!device.actions.includes('override') || overridePercent.length < 3) return null;
   const change = (name: string, to: number): void =>
-    void attempt(() => commandDevice(device.id, 'overrides', { [`${name}_percent`]: Math.min(200, Math.max(10, to)) }));
+    void attempt(() => commandDevice(device.id, 'override', { [name]: to }));
   return (
     <div class="overrides" role="group" aria-label={t.machines.overrides}>
       {kNames.map((name, index) => {
@@ -23,13 +31,13 @@ export function Overrides(props: { readonly device: Device }) {
         return (
           <div key={name} class="override">
             <span>{label}</span>
-            <button type="button" class="button small" aria-label={t.machines.less(label)} onClick={() => change(name, now - kStep)}>
+            <button type="button" class="button small" aria-label={t.machines.less(label)} onClick={() => change(name, next(name, now, -1))}>
               −
             </button>
             <button type="button" class="button small override-now" title={t.machines.standard} onClick={() => change(name, 100)}>
               {count(now)} %
             </button>
-            <button type="button" class="button small" aria-label={t.machines.more(label)} onClick={() => change(name, now + kStep)}>
+            <button type="button" class="button small" aria-label={t.machines.more(label)} onClick={() => change(name, next(name, now, 1))}>
               +
             </button>
           </div>

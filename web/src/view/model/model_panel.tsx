@@ -169,7 +169,7 @@ export function ModelPanel(props: { readonly name: string; readonly content: Job
         {mode === 'cylinders' && <CylinderLegend content={content} />}
       </div>
       <div class="view-foot">
-        <StripPicker index={content.index} />
+        <StripPicker index={content.index} job={content.job} />
         <ZoomButtons
           fitLabel={t.model.reset}
           onZoom={(factor) => scene?.zoom(factor)}
