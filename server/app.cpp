@@ -4,7 +4,10 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "server/http/api/views.h"
+#include "server/http/host_names.h"
 #include "server/http/router.h"
 
 namespace leafcutter::server {
@@ -16,8 +19,29 @@ EdgeOptions edge_options(const Config& config) {
     options.address = config.listen.address;
     options.port = config.listen.port;
     options.workers = config.http_workers;
-    options.rules.hosts.insert(options.rules.hosts.end(), config.hosts.begin(), config.hosts.end());
+    std::vector<std::string>& hosts = options.rules.hosts;
+    const std::vector<std::string> own = own_host_names(config.listen.address);
+    hosts.insert(hosts.end(), own.begin(), own.end());
+    hosts.insert(hosts.end(), config.hosts.begin(), config.hosts.end());
+    options.rules.trusted_proxies = config.trusted_proxies;
     return options;
+}
+
+void check_exposure(const Config& config, const Accounts& accounts) {
+    if (!accounts.empty()) {
+        return;
+    }
+    const std::string cure =
+        "add the first with `leafcutter user add NAME`, or listen on 127.0.0.1";
+    if (!is_loopback(config.listen.address)) {
+        throw BadConfig(fmt::format(
+            "listen: {} is not on the loopback interface, and nobody has an account: {}",
+            config.listen.address, cure));
+    }
+    if (!config.trusted_proxies.empty()) {
+        throw BadConfig(fmt::format(
+            "trusted_proxies: a proxy lets others in, and nobody has an account: {}", cure));
+    }
 }
 
 ComputeOptions compute_options(const Config& config) {
@@ -33,9 +57,12 @@ App::App(const Config& config, AppParts parts)
       hub_(event_source()) {
     store_ = std::make_unique<Store>(config.state, [this] { hub_.wake(); });
     std::filesystem::create_directories(burn_logs_);
+    accounts_ = std::make_unique<Accounts>(store_->accounts);
+    check_exposure(config, *accounts_);
+    audit_ = std::make_unique<AuditLog>(store_->accounts);
     // Before any machine is touched: another daemon may have them.
     edge_ = std::make_unique<Edge>(
-        edge_options(config), [this](Request& request) { return route(*this, request); }, hub_);
+        edge_options(config), [this](Request& request) { return answer(*this, request); }, hub_);
     for (const DeviceRecord& device : config.devices) {
         store_->devices.put(device);
     }

@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "server/auth/accounts.h"
+#include "server/auth/audit_log.h"
+#include "server/auth/login_limit.h"
 #include "server/config.h"
 #include "server/http/edge.h"
 #include "server/http/event_hub.h"
@@ -42,7 +45,8 @@ struct AppParts {
 
 class App {
 public:
-    // Everything runs when this returns. Throws StateDirUnusable, DatabaseUnusable, CannotListen.
+    // Everything runs when this returns. Throws StateDirUnusable, DatabaseUnusable, CannotListen,
+    // and BadConfig for an address that others reach while nobody has an account.
     App(const Config& config, AppParts parts);
 
     // Running cuts are held and cancelled, running jobs go back to the queue.
@@ -52,6 +56,9 @@ public:
 
     Store& store() { return *store_; }
     ComputeRunner& compute() { return *compute_; }
+    Accounts& accounts() { return *accounts_; }
+    LoginLimit& login_limit() { return login_limit_; }
+    AuditLog& audit() { return *audit_; }
     DeviceFleet& fleet() { return *fleet_; }
     EventHub& hub() { return hub_; }
     const AppParts& parts() const { return parts_; }
@@ -65,6 +72,9 @@ private:
     const std::filesystem::path burn_logs_;  // Folder of simulated machines' beam logs.
     EventHub hub_;
     std::unique_ptr<Store> store_;
+    std::unique_ptr<Accounts> accounts_;
+    LoginLimit login_limit_;
+    std::unique_ptr<AuditLog> audit_;
     std::unique_ptr<ComputeRunner> compute_;
     std::unique_ptr<DeviceFleet> fleet_;
     std::unique_ptr<Edge> edge_;

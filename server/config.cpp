@@ -88,14 +88,16 @@ void read_devices(const toml::node& node, Config& config) {
     }
 }
 
-void read_hosts(const toml::node& node, Config& config) {
-    const toml::array* hosts = node.as_array();
-    if (hosts == nullptr) {
-        fail(node.source(), "hosts: must be a list of names");
+std::vector<std::string> words_of(const toml::node& node, const std::string& key) {
+    const toml::array* words = node.as_array();
+    if (words == nullptr) {
+        fail(node.source(), key + ": must be a list of strings");
     }
-    for (const toml::node& host : *hosts) {
-        config.hosts.push_back(value_of<std::string>(host, "hosts", "a list of names"));
+    std::vector<std::string> result;
+    for (const toml::node& word : *words) {
+        result.push_back(value_of<std::string>(word, key, "a list of strings"));
     }
+    return result;
 }
 
 void read_key(std::string_view key, const toml::node& node, Config& config) {
@@ -104,7 +106,9 @@ void read_key(std::string_view key, const toml::node& node, Config& config) {
     } else if (key == "state") {
         config.state = value_of<std::string>(node, "state", "a string");
     } else if (key == "hosts") {
-        read_hosts(node, config);
+        config.hosts = words_of(node, "hosts");
+    } else if (key == "trusted_proxies") {
+        config.trusted_proxies = words_of(node, "trusted_proxies");
     } else if (key == "http_workers") {
         config.http_workers = count_of(node, "http_workers");
     } else if (key == "compute_workers") {
@@ -131,21 +135,17 @@ ListenAddress parse_listen(const std::string& text) {
         throw BadConfig(fmt::format("listen: {} is no ADDRESS:PORT", text));
     }
     std::string address = text.substr(0, colon);
-    if (address == "[::1]") {
-        address = "::1";
-    }
-    const bool loopback = address == "localhost" || address == "::1" || address.starts_with("127.");
-    if (!address.empty() && !loopback) {
-        throw BadConfig(
-            fmt::format("listen: {} is not on the loopback interface; other addresses need "
-                        "accounts, which this "
-                        "version does not have: listen on 127.0.0.1",
-                        address));
+    if (address.size() > 2 && address.front() == '[' && address.back() == ']') {
+        address = address.substr(1, address.size() - 2);
     }
     if (!address.empty()) {
         listen.address = address == "localhost" ? "127.0.0.1" : address;
     }
     return listen;
+}
+
+bool is_loopback(const std::string& address) {
+    return address == "localhost" || address == "::1" || address.starts_with("127.");
 }
 
 Config read_config(const std::filesystem::path& file) {

@@ -27,6 +27,7 @@ PINNED = {
     r"OpenMesh/.*": [r"geometry/mesh\.h"],
     r"termios\.h|asm/termbits\.h|sys/ioctl\.h|pty\.h": [r"drivers/.*", r"server/cli/.*"],
     r"sys/socket\.h|netdb\.h|arpa/inet\.h": [r"drivers/.*", r"server/.*"],
+    r"sodium\.h": [r"server/auth/secrets\.cpp"],
     r"libusb.*": [r"drivers/usb_(context|pipe|watch)\.(h|cpp)"],
 }
 

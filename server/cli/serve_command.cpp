@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -53,6 +54,14 @@ void wait_for_stop(const std::stop_token& stop) {
     never.wait(lock, stop, [] { return false; });
 }
 
+std::unique_ptr<App> started(const Config& config, AppParts parts) {
+    try {
+        return std::make_unique<App>(config, std::move(parts));
+    } catch (const BadConfig& error) {
+        throw UsageError(error.what());
+    }
+}
+
 void serve(const ServeOptions& options) {
     std::signal(SIGPIPE, SIG_IGN);
     const InterruptWatch interrupt;
@@ -64,10 +73,10 @@ void serve(const ServeOptions& options) {
     parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
     parts.check_params = check_job_params;
     parts.recut = recut_job_pieces;
-    App app(config, std::move(parts));
+    const std::unique_ptr<App> app = started(config, std::move(parts));
     const bool v6 = config.listen.address.find(':') != std::string::npos;
     const std::string address = v6 ? "[" + config.listen.address + "]" : config.listen.address;
-    std::printf("leafcutter: http://%s:%d/\n", address.c_str(), app.port());
+    std::printf("leafcutter: http://%s:%d/\n", address.c_str(), app->port());
     std::fflush(stdout);
     spdlog::info("state in {}", config.state.string());
     wait_for_stop(interrupt.token());

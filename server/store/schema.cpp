@@ -6,6 +6,8 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
+#include "server/store/account_schema.h"
+
 namespace leafcutter::server {
 
 namespace {
@@ -117,7 +119,8 @@ ALTER TABLE cut ADD COLUMN beam TEXT NOT NULL DEFAULT '';
 CREATE INDEX cut_rest ON cut(rest_of) WHERE rest_of <> '';
 CREATE INDEX cut_rest_blob ON cut(rest_sha256) WHERE rest_sha256 <> '';
 CREATE INDEX cut_intent_of ON cut_intent(cut);
-)sql"};
+)sql",
+    kAccountSchema};
 
 // Durability first: FULL syncs every commit, and only the writer's own checkpoints touch the file.
 constexpr const char* kPragmas = R"sql(

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "server/store/account_store.h"
 #include "server/store/blobs.h"
 #include "server/store/cut_store.h"
 #include "server/store/database.h"
@@ -30,6 +31,7 @@ struct Store {
     DeviceStore devices;
     MaterialStore materials;
     EventLog events;
+    AccountStore accounts;
     std::vector<std::string> interrupted_devices;  // Whose cut a dead daemon left in mid-beam.
 };
 

@@ -50,6 +50,22 @@ Response show_material(App& app, Request& request);
 Response put_material(App& app, Request& request);
 Response delete_material(App& app, Request& request);
 
+// session.cpp
+Response show_session(App& app, Request& request);
+Response log_in(App& app, Request& request);
+Response log_out(App& app, Request& request);
+
+// accounts.cpp
+Response list_users(App& app, Request& request);
+Response add_user(App& app, Request& request);
+Response show_user(App& app, Request& request);
+Response change_user(App& app, Request& request);
+Response delete_user(App& app, Request& request);
+Response list_keys(App& app, Request& request);
+Response add_key(App& app, Request& request);
+Response delete_key(App& app, Request& request);
+Response list_audit(App& app, Request& request);
+
 // events.cpp
 Response stream_events(App& app, Request& request);
 Response stream_job_events(App& app, Request& request);
