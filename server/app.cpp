@@ -54,8 +54,9 @@ ComputeOptions compute_options(const Config& config) {
 App::App(const Config& config, AppParts parts)
     : parts_(std::move(parts)),
       burn_logs_(std::filesystem::absolute(config.state) / "burns"),
-      hub_(event_source()) {
-    store_ = std::make_unique<Store>(config.state, [this] { hub_.wake(); });
+      hub_(event_source()),
+      stop_policy_(config.stop_policy) {
+    store_ = std::make_unique<Store>(config.state, [this] { after_commit(); });
     std::filesystem::create_directories(burn_logs_);
     accounts_ = std::make_unique<Accounts>(store_->accounts);
     check_exposure(config, *accounts_);
@@ -70,17 +71,41 @@ App::App(const Config& config, AppParts parts)
         std::make_unique<ComputeRunner>(*store_, parts_.compute, compute_options(config),
                                         [this](const std::string& job) { hub_.post("job", job); });
     fleet_ = std::make_unique<DeviceFleet>(
-        *store_, DeviceHooks{parts_.open_device,
-                             [this](const std::string& device) { hub_.post("device", device); },
-                             [this](const std::string& cut) { hub_.post("cut", cut); }});
+        *store_,
+        DeviceHooks{parts_.open_device,
+                    [this](const std::string& device) { hub_.post("device", device); },
+                    [this](const std::string& cut) { hub_.post("cut", cut); }, config.stop_policy});
+    begin_webhooks(config);
     hub_.start();
     edge_->start();
 }
 
 App::~App() {
+    if (stop_policy_ == StopPolicy::Finish) {
+        fleet_->finish_sheets();  // With the edge open: somebody may have to press stop.
+    }
     edge_.reset();
     fleet_->stop_all();
     hub_.stop();
+    std::vector<std::unique_ptr<Webhook>> webhooks;
+    const std::scoped_lock lock(webhooks_mutex_);
+    webhooks.swap(webhooks_);
+}
+
+void App::begin_webhooks(const Config& config) {
+    for (const WebhookConfig& webhook : config.webhooks) {
+        auto begun = std::make_unique<Webhook>(webhook, store_->events, store_->webhooks);
+        const std::scoped_lock lock(webhooks_mutex_);
+        webhooks_.push_back(std::move(begun));
+    }
+}
+
+void App::after_commit() {
+    hub_.wake();
+    const std::scoped_lock lock(webhooks_mutex_);
+    for (const auto& webhook : webhooks_) {
+        webhook->wake();
+    }
 }
 
 EventSource App::event_source() {

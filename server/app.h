@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,9 +17,11 @@
 #include "server/config.h"
 #include "server/http/edge.h"
 #include "server/http/event_hub.h"
+#include "server/http/http_metrics.h"
 #include "server/queue/compute_runner.h"
 #include "server/queue/device_fleet.h"
 #include "server/store/store.h"
+#include "server/webhook/webhook.h"
 
 namespace leafcutter::server {
 
@@ -49,7 +52,7 @@ public:
     // and BadConfig for an address that others reach while nobody has an account.
     App(const Config& config, AppParts parts);
 
-    // Running cuts are held and cancelled, running jobs go back to the queue.
+    // Ends as the configuration's stop_policy says; running jobs go back to the queue.
     ~App();
     App(const App&) = delete;
     App& operator=(const App&) = delete;
@@ -59,6 +62,8 @@ public:
     Accounts& accounts() { return *accounts_; }
     LoginLimit& login_limit() { return login_limit_; }
     AuditLog& audit() { return *audit_; }
+    HttpMetrics& http_metrics() { return http_metrics_; }
+    const std::vector<std::unique_ptr<Webhook>>& webhooks() const { return webhooks_; }
     DeviceFleet& fleet() { return *fleet_; }
     EventHub& hub() { return hub_; }
     const AppParts& parts() const { return parts_; }
@@ -67,6 +72,8 @@ public:
 
 private:
     EventSource event_source();
+    void begin_webhooks(const Config& config);
+    void after_commit();
 
     const AppParts parts_;
     const std::filesystem::path burn_logs_;  // Folder of simulated machines' beam logs.
@@ -77,6 +84,10 @@ private:
     std::unique_ptr<AuditLog> audit_;
     std::unique_ptr<ComputeRunner> compute_;
     std::unique_ptr<DeviceFleet> fleet_;
+    const StopPolicy stop_policy_;
+    HttpMetrics http_metrics_;
+    std::mutex webhooks_mutex_;  // Guards the list while it is built and taken down.
+    std::vector<std::unique_ptr<Webhook>> webhooks_;
     std::unique_ptr<Edge> edge_;
 };
 

@@ -10,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include "drivers/device.h"
+#include "server/webhook/post.h"
 
 namespace leafcutter::server {
 
@@ -74,20 +75,6 @@ DeviceRecord device_of(const toml::table& table) {
     return device;
 }
 
-void read_devices(const toml::node& node, Config& config) {
-    const toml::array* devices = node.as_array();
-    if (devices == nullptr) {
-        fail(node.source(), "device: must be written as [[device]]");
-    }
-    for (const toml::node& each : *devices) {
-        const toml::table* table = each.as_table();
-        if (table == nullptr) {
-            fail(each.source(), "device: must be a table");
-        }
-        config.devices.push_back(device_of(*table));
-    }
-}
-
 std::vector<std::string> words_of(const toml::node& node, const std::string& key) {
     const toml::array* words = node.as_array();
     if (words == nullptr) {
@@ -100,6 +87,92 @@ std::vector<std::string> words_of(const toml::node& node, const std::string& key
     return result;
 }
 
+void check_webhook(const WebhookConfig& webhook, const toml::source_region& where) {
+    if (!target_of(webhook.url)) {
+        fail(where, "webhook.url: must be http://… or https://…");
+    }
+    constexpr std::size_t kShortestSecret = 16;
+    if (webhook.secret.size() < kShortestSecret) {
+        fail(where, "webhook.secret: must have 16 bytes at least");
+    }
+    for (const std::string& event : webhook.events) {
+        if (event != "job" && event != "cut") {
+            fail(where, "webhook.events: must be some of \"job\" and \"cut\"");
+        }
+    }
+}
+
+WebhookConfig webhook_of(const toml::table& table) {
+    WebhookConfig webhook;
+    for (const auto& [key, node] : table) {
+        if (key == "url") {
+            webhook.url = value_of<std::string>(node, "url", "a string");
+        } else if (key == "secret") {
+            webhook.secret = value_of<std::string>(node, "secret", "a string");
+        } else if (key == "events") {
+            webhook.events = words_of(node, "events");
+        } else if (key == "allow_private") {
+            webhook.allow_private = value_of<bool>(node, "allow_private", "true or false");
+        } else {
+            fail(node.source(), fmt::format("webhook.{}: there is no such key", key.str()));
+        }
+    }
+    check_webhook(webhook, table.source());
+    return webhook;
+}
+
+// [[key]] tables, each read by `read`.
+template <typename Read>
+void read_tables(const toml::node& node, const std::string& key, Read read) {
+    const toml::array* tables = node.as_array();
+    if (tables == nullptr) {
+        fail(node.source(), fmt::format("{}: must be written as [[{}]]", key, key));
+    }
+    for (const toml::node& each : *tables) {
+        const toml::table* table = each.as_table();
+        if (table == nullptr) {
+            fail(each.source(), key + ": must be a table");
+        }
+        read(*table);
+    }
+}
+
+StopPolicy stop_policy_of(const toml::node& node) {
+    const auto word = value_of<std::string>(node, "stop_policy", "a string");
+    if (word == "pause") {
+        return StopPolicy::Pause;
+    }
+    if (word == "finish") {
+        return StopPolicy::Finish;
+    }
+    if (word == "abort") {
+        return StopPolicy::Abort;
+    }
+    fail(node.source(), "stop_policy: must be pause, finish or abort");
+}
+
+LogFormat log_format_of(const toml::node& node) {
+    const auto word = value_of<std::string>(node, "log_format", "a string");
+    if (word != "text" && word != "json") {
+        fail(node.source(), "log_format: must be text or json");
+    }
+    return word == "json" ? LogFormat::Json : LogFormat::Text;
+}
+
+bool read_count(std::string_view key, const toml::node& node, Config& config) {
+    const std::pair<std::string_view, unsigned*> counts[] = {
+        {"http_workers", &config.http_workers},
+        {"compute_workers", &config.compute_workers},
+        {"threads_per_job", &config.threads_per_job}};
+    for (const auto& [name, count] : counts) {
+        if (key == name) {
+            *count = count_of(node, std::string(name));
+            return true;
+        }
+    }
+    return false;
+}
+
 void read_key(std::string_view key, const toml::node& node, Config& config) {
     if (key == "listen") {
         config.listen = parse_listen(value_of<std::string>(node, "listen", "a string"));
@@ -109,15 +182,19 @@ void read_key(std::string_view key, const toml::node& node, Config& config) {
         config.hosts = words_of(node, "hosts");
     } else if (key == "trusted_proxies") {
         config.trusted_proxies = words_of(node, "trusted_proxies");
-    } else if (key == "http_workers") {
-        config.http_workers = count_of(node, "http_workers");
-    } else if (key == "compute_workers") {
-        config.compute_workers = count_of(node, "compute_workers");
-    } else if (key == "threads_per_job") {
-        config.threads_per_job = count_of(node, "threads_per_job");
+    } else if (key == "stop_policy") {
+        config.stop_policy = stop_policy_of(node);
+    } else if (key == "log_format") {
+        config.log_format = log_format_of(node);
     } else if (key == "device") {
-        read_devices(node, config);
-    } else {
+        read_tables(node, "device", [&config](const toml::table& table) {
+            config.devices.push_back(device_of(table));
+        });
+    } else if (key == "webhook") {
+        read_tables(node, "webhook", [&config](const toml::table& table) {
+            config.webhooks.push_back(webhook_of(table));
+        });
+    } else if (!read_count(key, node, config)) {
         fail(node.source(), fmt::format("{}: there is no such key", key));
     }
 }

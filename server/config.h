@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "server/log_format.h"
+#include "server/queue/device_runner.h"
 #include "server/store/records.h"
+#include "server/webhook/webhook.h"
 
 namespace leafcutter::server {
 
@@ -31,7 +34,10 @@ struct Config {
     unsigned http_workers = 8;
     unsigned compute_workers = 1;
     unsigned threads_per_job = 0;  // 0: as many as the machine has.
+    StopPolicy stop_policy = StopPolicy::Pause;
+    LogFormat log_format = LogFormat::Text;
     std::vector<DeviceRecord> devices;
+    std::vector<WebhookConfig> webhooks;
 };
 
 // "127.0.0.1:8080", "[::1]:8080", "0.0.0.0:8080" or ":8080" (loopback). Throws BadConfig.

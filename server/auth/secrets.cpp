@@ -45,6 +45,20 @@ std::string new_secret() {
                              sodium_base64_VARIANT_URLSAFE_NO_PADDING);
 }
 
+std::string hmac_sha256(std::string_view key, std::string_view text) {
+    begin_sodium();
+    const auto bytes = [](std::string_view view) {
+        return reinterpret_cast<const unsigned char*>(view.data());
+    };
+    crypto_auth_hmacsha256_state state;
+    crypto_auth_hmacsha256_init(&state, bytes(key), key.size());
+    crypto_auth_hmacsha256_update(&state, bytes(text), text.size());
+    std::array<unsigned char, crypto_auth_hmacsha256_BYTES> code{};
+    crypto_auth_hmacsha256_final(&state, code.data());
+    std::array<char, 2 * crypto_auth_hmacsha256_BYTES + 1> hex{};
+    return sodium_bin2hex(hex.data(), hex.size(), code.data(), code.size());
+}
+
 bool same_secret(std::string_view a, std::string_view b) {
     return a.size() == b.size() && sodium_memcmp(a.data(), b.data(), a.size()) == 0;
 }

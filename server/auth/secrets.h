@@ -15,6 +15,9 @@ bool is_password(const std::string& hash, std::string_view password);
 // 256 bits of the kernel's randomness, in 43 letters of URL-safe base 64.
 std::string new_secret();
 
+// HMAC-SHA256, in lower-case hex.
+std::string hmac_sha256(std::string_view key, std::string_view text);
+
 // Equal, in a time that says nothing of where they differ.
 bool same_secret(std::string_view a, std::string_view b);
 

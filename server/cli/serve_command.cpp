@@ -9,13 +9,14 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "drivers/device.h"
 #include "server/app.h"
 #include "server/cli/command.h"
 #include "server/cli/interrupt.h"
+#include "server/cli/service_notice.h"
+#include "server/log_format.h"
 #include "server/recut_compute.h"
 #include "server/weave_compute.h"
 
@@ -66,8 +67,7 @@ void serve(const ServeOptions& options) {
     std::signal(SIGPIPE, SIG_IGN);
     const InterruptWatch interrupt;
     const Config config = wanted_config(options);
-    spdlog::set_default_logger(spdlog::stderr_color_mt("leafcutter"));
-    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+    begin_log(config.log_format);
     AppParts parts;
     parts.compute = weave_job;
     parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
@@ -79,7 +79,9 @@ void serve(const ServeOptions& options) {
     std::printf("leafcutter: http://%s:%d/\n", address.c_str(), app->port());
     std::fflush(stdout);
     spdlog::info("state in {}", config.state.string());
+    notify_service_manager("READY=1");
     wait_for_stop(interrupt.token());
+    notify_service_manager("STOPPING=1");
     spdlog::info("stopping");
 }
 

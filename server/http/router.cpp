@@ -1,6 +1,7 @@
 #include "server/http/router.h"
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 #include <string>
 
@@ -132,12 +133,15 @@ Response route(App& app, Request& request) {
 }
 
 Response answer(App& app, Request& request) {
+    const auto begin = std::chrono::steady_clock::now();
     Response response;
     try {
         response = route(app, request);
     } catch (const std::exception& error) {
         response = response_to(error);
     }
+    app.http_metrics().add(request.method, response.status,
+                           std::chrono::steady_clock::now() - begin);
     if (is_unsafe(request)) {
         AuditRecord record;
         record.user = request.caller.name;

@@ -28,6 +28,7 @@ public:
     void read(const std::function<void(SQLite::Database&)>& work) const;
 
     bool is_healthy() const { return writer_.is_healthy(); }
+    const LatencyHistogram& commit_latency() const { return writer_.commit_latency(); }
 
 private:
     std::unique_ptr<SQLite::Database> take_reader() const;

@@ -120,7 +120,13 @@ CREATE INDEX cut_rest ON cut(rest_of) WHERE rest_of <> '';
 CREATE INDEX cut_rest_blob ON cut(rest_sha256) WHERE rest_sha256 <> '';
 CREATE INDEX cut_intent_of ON cut_intent(cut);
 )sql",
-    kAccountSchema};
+    kAccountSchema,
+    R"sql(
+-- How far each webhook has been told of the events.
+CREATE TABLE webhook(
+    url TEXT PRIMARY KEY,
+    told_seq INTEGER NOT NULL) WITHOUT ROWID;
+)sql"};
 
 // Durability first: FULL syncs every commit, and only the writer's own checkpoints touch the file.
 constexpr const char* kPragmas = R"sql(

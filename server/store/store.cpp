@@ -13,7 +13,8 @@ Store::Store(const std::filesystem::path& path, std::function<void()> after_comm
       devices(database),
       materials(database),
       events(database),
-      accounts(database) {
+      accounts(database),
+      webhooks(database) {
     jobs.recover();
     interrupted_devices = cuts.recover();
     blobs.sweep([this](const std::string& sha256) { return jobs.refers_to_blob(sha256); });

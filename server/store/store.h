@@ -15,6 +15,7 @@
 #include "server/store/job_store.h"
 #include "server/store/material_store.h"
 #include "server/store/state_dir.h"
+#include "server/store/webhook_store.h"
 
 namespace leafcutter::server {
 
@@ -32,6 +33,7 @@ struct Store {
     MaterialStore materials;
     EventLog events;
     AccountStore accounts;
+    WebhookStore webhooks;
     std::vector<std::string> interrupted_devices;  // Whose cut a dead daemon left in mid-beam.
 };
 
