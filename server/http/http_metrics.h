@@ -22,8 +22,8 @@ public:
     std::string text() const;
 
 private:
-    static constexpr std::array<std::string_view, 6> kMethods{"GET", "HEAD",   "POST",
-                                                              "PUT", "DELETE", "OPTIONS"};
+    static constexpr std::array<std::string_view, 7> kMethods{"GET",   "HEAD",   "POST",   "PUT",
+                                                              "PATCH", "DELETE", "OPTIONS"};
 
     struct OfMethod {
         LatencyHistogram latency;

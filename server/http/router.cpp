@@ -63,6 +63,8 @@ constexpr Route kRoutes[] = {
     {"GET", "/api/v1/events", stream_events, Role::Viewer},
     {"GET", "/api/v1/version", show_version, Role::Nobody},
     {"GET", "/api/v1/openapi.json", show_openapi, Role::Nobody},
+    {"GET", "/api/version", octoprint_version, Role::Nobody},
+    {"POST", "/api/files/local", octoprint_upload, Role::Submitter},
     {"GET", "/healthz", show_health, Role::Nobody},
     {"GET", "/readyz", show_readiness, Role::Nobody},
     {"GET", "/metrics", show_metrics, Role::Viewer},

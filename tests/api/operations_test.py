@@ -15,7 +15,7 @@ import time
 import unittest
 from pathlib import Path
 
-from daemon import BINARY, Daemon, form, free_port
+from daemon import BINARY, SQUARE, Daemon, form, free_port
 
 AS_JSON = {"Content-Type": "application/json"}
 QUICK = {"nesting": {"time_s": 0.5}}
@@ -224,6 +224,34 @@ class Webhooks(unittest.TestCase):
                 daemon.stop()
             self.assertTrue(self.listener.calls.empty())
             self.assertIn("private network", daemon.log_path.read_text())
+
+
+class OctoPrint(unittest.TestCase):
+    """What PrusaSlicer, Cura and their like send."""
+
+    def upload(self, daemon, name, more=b""):
+        body = (b'--b\r\nContent-Disposition: form-data; name="path"\r\n\r\n\r\n' + more
+                + f'--b\r\nContent-Disposition: form-data; name="file"; filename="{name}"\r\n'.encode()
+                + b"Content-Type: application/octet-stream\r\n\r\n" + SQUARE + b"\r\n--b--\r\n")
+        status, headers, answer = daemon.exchange("POST", "/api/files/local", body,
+                                                  {"Content-Type": "multipart/form-data; boundary=b"})
+        return status, headers, json.loads(answer)
+
+    def test_a_mesh_becomes_a_job_and_nothing_starts(self):
+        with tempfile.TemporaryDirectory() as folder:
+            daemon = Configured(folder, "")
+            try:
+                self.assertTrue(daemon.get("/api/version")["text"].startswith("OctoPrint"))
+                wants_print = b'--b\r\nContent-Disposition: form-data; name="print"\r\n\r\ntrue\r\n'
+                status, headers, answer = self.upload(daemon, "square.off", wants_print)
+                self.assertEqual((status, answer["done"], answer["effectivePrint"]), (201, True, False))
+                path = headers["Location"].split(str(daemon.port), 1)[1]
+                self.assertEqual(daemon.get(path)["name"], "square.off")
+                self.assertEqual(daemon.get("/api/v1/cuts")["cuts"], [])
+                status, _, answer = self.upload(daemon, "square.gcode")
+                self.assertEqual((status, answer["code"]), (415, "not-a-mesh"))
+            finally:
+                daemon.stop()
 
 
 class Stops(unittest.TestCase):

@@ -66,6 +66,10 @@ Response add_key(App& app, Request& request);
 Response delete_key(App& app, Request& request);
 Response list_audit(App& app, Request& request);
 
+// octoprint.cpp
+Response octoprint_version(App& app, Request& request);
+Response octoprint_upload(App& app, Request& request);
+
 // events.cpp
 Response stream_events(App& app, Request& request);
 Response stream_job_events(App& app, Request& request);

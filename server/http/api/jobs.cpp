@@ -8,6 +8,7 @@
 
 #include "server/app.h"
 #include "server/http/api/handlers.h"
+#include "server/http/api/job_intake.h"
 #include "server/http/api/lookup.h"
 #include "server/http/api/views.h"
 #include "server/http/json_body.h"
@@ -21,23 +22,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kLongestName = 200;
-
-void check_room(App& app, std::int64_t bytes) {
-    if (!app.store().blobs.has_room_for(bytes)) {
-        throw HttpProblem(507, "disk", "there is no room for this file");
-    }
-}
-
-// Streams the current part into the blob store.
-SourceFile store_mesh(App& app, MultipartReader& parts, const PartHead& head) {
-    const std::unique_ptr<BlobWriter> writer = app.store().blobs.begin();
-    std::array<char, 65536> piece;
-    while (const std::size_t size = parts.read(piece)) {
-        writer->write({piece.data(), size});
-    }
-    const BlobId blob = writer->finish();
-    return {head.file_name, blob.bytes, blob.sha256};
-}
 
 NewJob job_from_form(App& app, const Request& request) {
     check_room(app, request.body.bytes);
@@ -95,6 +79,31 @@ std::optional<IdempotencyKey> key_of(const Request& request, const NewJob& job) 
 }
 
 Response accept(App& app, const Request& request, NewJob job) {
+    const AddedJob added = take_job(app, request, std::move(job));
+    Response response = json_response(job_json(app, added.job), 201);
+    response.headers["Location"] = "/api/v1/jobs/" + added.job.id;
+    return response;
+}
+
+}  // namespace
+
+void check_room(App& app, std::int64_t bytes) {
+    if (!app.store().blobs.has_room_for(bytes)) {
+        throw HttpProblem(507, "disk", "there is no room for this file");
+    }
+}
+
+SourceFile store_mesh(App& app, MultipartReader& parts, const PartHead& head) {
+    const std::unique_ptr<BlobWriter> writer = app.store().blobs.begin();
+    std::array<char, 65536> piece;
+    while (const std::size_t size = parts.read(piece)) {
+        writer->write({piece.data(), size});
+    }
+    const BlobId blob = writer->finish();
+    return {head.file_name, blob.bytes, blob.sha256};
+}
+
+AddedJob take_job(App& app, const Request& request, NewJob job) {
     check_params(app, job);
     job.name = job.name.empty() ? job.file.name : job.name;
     job.name.resize(std::min(job.name.size(), kLongestName));
@@ -102,12 +111,8 @@ Response accept(App& app, const Request& request, NewJob job) {
     if (!added.replayed) {
         app.compute().wake();
     }
-    Response response = json_response(job_json(app, added.job), 201);
-    response.headers["Location"] = "/api/v1/jobs/" + added.job.id;
-    return response;
+    return added;
 }
-
-}  // namespace
 
 Response create_job(App& app, Request& request) {
     const std::string type = request.header("content-type").value_or("");
