@@ -41,7 +41,6 @@ class Configured:
 
     exchange = Daemon.exchange
     call = Daemon.call
-    validate = getattr(Daemon, "validate", None)
 
     def stop(self, signals=1):
         for _ in range(signals):
