@@ -36,8 +36,10 @@ App::App(const Config& config, AppParts parts)
     // Before any machine is touched: another daemon may have them.
     edge_ = std::make_unique<Edge>(
         edge_options(config), [this](Request& request) { return route(*this, request); }, hub_);
-    for (const DeviceRecord& device : config.devices) {
-        store_->devices.put(device);
+    if (store_->trouble().empty()) {
+        for (const DeviceRecord& device : config.devices) {
+            store_->devices.put(device);
+        }
     }
     compute_ =
         std::make_unique<ComputeRunner>(*store_, parts_.compute, compute_options(config),
@@ -46,6 +48,7 @@ App::App(const Config& config, AppParts parts)
         *store_, DeviceHooks{parts_.open_device,
                              [this](const std::string& device) { hub_.post("device", device); },
                              [this](const std::string& cut) { hub_.post("cut", cut); }});
+    housekeeper_ = std::make_unique<Housekeeper>(*store_);
     hub_.start();
     edge_->start();
 }

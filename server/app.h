@@ -15,6 +15,7 @@
 #include "server/http/event_hub.h"
 #include "server/queue/compute_runner.h"
 #include "server/queue/device_fleet.h"
+#include "server/queue/housekeeper.h"
 #include "server/store/store.h"
 
 namespace leafcutter::server {
@@ -53,6 +54,7 @@ public:
     Store& store() { return *store_; }
     ComputeRunner& compute() { return *compute_; }
     DeviceFleet& fleet() { return *fleet_; }
+    Housekeeper& housekeeper() { return *housekeeper_; }
     EventHub& hub() { return hub_; }
     const AppParts& parts() const { return parts_; }
     const std::filesystem::path& burn_logs() const { return burn_logs_; }
@@ -67,6 +69,7 @@ private:
     std::unique_ptr<Store> store_;
     std::unique_ptr<ComputeRunner> compute_;
     std::unique_ptr<DeviceFleet> fleet_;
+    std::unique_ptr<Housekeeper> housekeeper_;
     std::unique_ptr<Edge> edge_;
 };
 

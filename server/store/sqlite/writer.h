@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <stop_token>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -22,19 +23,20 @@ namespace leafcutter::server {
 
 class Writer {
 public:
-    // Opens or creates the database and brings its schema up to date. `after_commit` is called by
-    // the writer's thread after every group.
+    // Opens the database or creates it, and brings its schema up to date. `after_commit` is called
+    // by the writer's thread after every group. Throws DatabaseUnusable, SQLite::Exception.
     Writer(const std::filesystem::path& file, std::function<void()> after_commit);
     ~Writer();
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
 
     // Runs `work` inside a transaction and returns when it is on disk. Work that throws is rolled
-    // back alone, and what it threw is thrown here.
+    // back alone, and what it threw is thrown here; SQLite's errors as StoreError.
     void run(const std::function<void(SQLite::Database&)>& work);
 
-    // False after the disk failed a commit: the database takes nothing more.
-    bool is_healthy() const;
+    // Not empty after the disk failed a commit, or after give_up(): nothing more is written.
+    std::string trouble() const;
+    void give_up(const std::string& what);
 
 private:
     struct Request;
@@ -42,7 +44,9 @@ private:
     void loop(const std::stop_token& stop);
     void commit_group(const std::vector<Request*>& group);
     void checkpoint_if_due();
+    void wait_until_done(Request& request);
 
+    const std::filesystem::path file_;
     std::unique_ptr<SQLite::Database> database_;  // Of the thread alone, once it runs.
     std::function<void()> after_commit_;
     int groups_since_checkpoint_ = 0;
@@ -51,7 +55,7 @@ private:
     std::condition_variable_any arrived_;
     std::condition_variable finished_;
     std::vector<Request*> waiting_;
-    bool healthy_ = true;
+    std::string trouble_;
     bool closed_ = false;
 
     std::jthread thread_;  // Last: it uses everything above.

@@ -31,7 +31,7 @@ std::string written(const BeamRecord& beam);
 // Events: of the cut, and of its job, whose view has its cuts, and what it allows depends on
 // whether they are over.
 void tell(SQLite::Database& database, const CutRecord& cut, std::string note);
-void tell_job(SQLite::Database& database, const CutRecord& cut, std::string note);
+void tell_job_of(SQLite::Database& database, const CutRecord& cut, std::string note);
 
 // The one place where a cut changes its state. False if it is no longer in the state it was read
 // in. Throws std::logic_error if the table of states forbids the move.

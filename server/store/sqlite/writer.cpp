@@ -1,14 +1,24 @@
-#include "server/store/writer.h"
+#include "server/store/sqlite/writer.h"
 
 #include <sqlite3.h>
-#include <stdexcept>
 #include <utility>
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
 
-#include "server/store/schema.h"
+#include "server/crash_point.h"
+#include "server/store/sqlite/errors.h"
+#include "server/store/sqlite/rescue.h"
+#include "server/store/sqlite/schema.h"
+#include "server/store/store_error.h"
 
 namespace leafcutter::server {
+
+namespace {
+
+constexpr int kPatienceMs = 5000;
+
+}  // namespace
 
 struct Writer::Request {
     const std::function<void(SQLite::Database&)>* work = nullptr;
@@ -17,38 +27,62 @@ struct Writer::Request {
 };
 
 Writer::Writer(const std::filesystem::path& file, std::function<void()> after_commit)
-    : database_(std::make_unique<SQLite::Database>(
-          file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, 5000)),
+    : file_(file),
+      database_(std::make_unique<SQLite::Database>(
+          file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kPatienceMs)),
       after_commit_(std::move(after_commit)) {
-    prepare_schema(*database_);
+    prepare_connection(*database_);
+    migrate(*database_);
     thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
 }
 
 Writer::~Writer() {
     thread_.request_stop();
     thread_.join();
-    sqlite3_wal_checkpoint_v2(database_->getHandle(), nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr,
-                              nullptr);
+    if (trouble_.empty()) {
+        sqlite3_wal_checkpoint_v2(database_->getHandle(), nullptr, SQLITE_CHECKPOINT_TRUNCATE,
+                                  nullptr, nullptr);
+    }
 }
 
 void Writer::run(const std::function<void(SQLite::Database&)>& work) {
     Request request;
     request.work = &work;
+    wait_until_done(request);
+    if (!request.error) {
+        return;
+    }
+    try {
+        std::rethrow_exception(request.error);
+    } catch (const SQLite::Exception& error) {
+        throw store_error_of(error);
+    }
+}
+
+void Writer::wait_until_done(Request& request) {
     std::unique_lock lock(mutex_);
     if (closed_) {
-        throw std::runtime_error("the store is closed");
+        throw StoreError(StoreTrouble::Failed, "the store is closed");
+    }
+    if (!trouble_.empty()) {
+        throw StoreError(StoreTrouble::ReadOnly, trouble_);
     }
     waiting_.push_back(&request);
     arrived_.notify_one();
     finished_.wait(lock, [&request] { return request.done; });
-    if (request.error) {
-        std::rethrow_exception(request.error);
-    }
 }
 
-bool Writer::is_healthy() const {
+std::string Writer::trouble() const {
     const std::scoped_lock lock(mutex_);
-    return healthy_;
+    return trouble_;
+}
+
+void Writer::give_up(const std::string& what) {
+    mark_suspect(file_);
+    const std::scoped_lock lock(mutex_);
+    if (trouble_.empty()) {
+        trouble_ = what;
+    }
 }
 
 void Writer::loop(const std::stop_token& stop) {
@@ -92,16 +126,19 @@ void Writer::commit_group(const std::vector<Request*>& group) {
             }
             database_->exec("RELEASE request");
         }
+        crash_point("commit.before");
         database_->exec("COMMIT");
-    } catch (...) {
+        crash_point("commit.after");
+    } catch (const SQLite::Exception& error) {
         // A commit that failed leaves the disk's word in doubt: nobody of the group was heard.
-        const std::exception_ptr error = std::current_exception();
+        const std::exception_ptr thrown = std::current_exception();
         sqlite3_exec(database_->getHandle(), "ROLLBACK", nullptr, nullptr, nullptr);
-        const int code = database_->getErrorCode();
-        const std::scoped_lock lock(mutex_);
-        healthy_ = healthy_ && code != SQLITE_IOERR && code != SQLITE_CORRUPT;
+        if (is_fatal_for_writing(error)) {
+            give_up(fmt::format("the database takes nothing more since the disk failed: {}",
+                                error.what()));
+        }
         for (Request* request : group) {
-            request->error = error;
+            request->error = thrown;
         }
     }
 }

@@ -1,4 +1,4 @@
-#include "server/store/cut_rows.h"
+#include "server/store/sqlite/cut_rows.h"
 
 #include <algorithm>
 #include <sstream>
@@ -8,8 +8,8 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
-#include "server/store/event_log.h"
 #include "server/store/ids.h"
+#include "server/store/sqlite/events.h"
 
 namespace leafcutter::server {
 
@@ -116,7 +116,7 @@ void tell(SQLite::Database& database, const CutRecord& cut, std::string note) {
     append_event(database, event);
 }
 
-void tell_job(SQLite::Database& database, const CutRecord& cut, std::string note) {
+void tell_job_of(SQLite::Database& database, const CutRecord& cut, std::string note) {
     EventRecord event;
     event.type = "job";
     event.subject = cut.job;
@@ -146,7 +146,7 @@ bool move_cut(SQLite::Database& database,
     }
     tell(database, cut, fmt::format("{} -> {}", to_string(cut.state), to_string(to)));
     if (is_final(to)) {
-        tell_job(database, cut, fmt::format("cut {}", to_string(to)));
+        tell_job_of(database, cut, fmt::format("cut {}", to_string(to)));
     }
     return true;
 }

@@ -2,8 +2,8 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "server/store/database.h"
-#include "server/store/job_store.h"
+#include "server/store/sqlite/database.h"
+#include "server/store/sqlite/jobs.h"
 
 namespace leafcutter::server {
 
@@ -16,7 +16,7 @@ ArtifactRecord artifact_from(SQLite::Statement& row) {
 
 }  // namespace
 
-std::vector<ArtifactRecord> JobStore::artifacts(const std::string& job) const {
+std::vector<ArtifactRecord> SqliteJobStore::artifacts(const std::string& job) const {
     std::vector<ArtifactRecord> found;
     database_.read([&](SQLite::Database& database) {
         SQLite::Statement query(
@@ -30,8 +30,8 @@ std::vector<ArtifactRecord> JobStore::artifacts(const std::string& job) const {
     return found;
 }
 
-std::optional<ArtifactRecord> JobStore::artifact(const std::string& job,
-                                                 const std::string& path) const {
+std::optional<ArtifactRecord> SqliteJobStore::artifact(const std::string& job,
+                                                       const std::string& path) const {
     std::optional<ArtifactRecord> found;
     database_.read([&](SQLite::Database& database) {
         SQLite::Statement query(
@@ -46,7 +46,7 @@ std::optional<ArtifactRecord> JobStore::artifact(const std::string& job,
     return found;
 }
 
-bool JobStore::refers_to_blob(const std::string& sha256) const {
+bool SqliteJobStore::refers_to_blob(const std::string& sha256) const {
     bool found = false;
     database_.read([&](SQLite::Database& database) {
         SQLite::Statement query(database,

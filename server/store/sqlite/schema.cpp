@@ -1,10 +1,13 @@
-#include "server/store/schema.h"
+#include "server/store/sqlite/schema.h"
 
 #include <array>
 #include <string>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
+
+#include "server/crash_point.h"
+#include "server/store/store_error.h"
 
 namespace leafcutter::server {
 
@@ -117,6 +120,45 @@ ALTER TABLE cut ADD COLUMN beam TEXT NOT NULL DEFAULT '';
 CREATE INDEX cut_rest ON cut(rest_of) WHERE rest_of <> '';
 CREATE INDEX cut_rest_blob ON cut(rest_sha256) WHERE rest_sha256 <> '';
 CREATE INDEX cut_intent_of ON cut_intent(cut);
+)sql",
+    R"sql(
+-- The queue has an order of its own: priority, then place.
+ALTER TABLE job ADD COLUMN priority INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN place INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN retries INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN retry_cause TEXT NOT NULL DEFAULT '';
+UPDATE job SET place = ordinal * 1048576;
+DROP INDEX job_queued;
+CREATE INDEX job_queued ON job(priority DESC, place, ordinal) WHERE state = 'queued';
+CREATE INDEX job_dead ON job(ordinal) WHERE error_code = 'poison-job' AND state = 'failed';
+CREATE INDEX job_ended ON job(updated_ms) WHERE state IN ('done','failed','cancelled');
+CREATE INDEX idempotency_at ON idempotency(at_ms);
+
+-- What a sheet is cut from, and what it leaves.
+ALTER TABLE sheet ADD COLUMN width_mm REAL NOT NULL DEFAULT 0;
+ALTER TABLE sheet ADD COLUMN height_mm REAL NOT NULL DEFAULT 0;
+ALTER TABLE sheet ADD COLUMN stock TEXT NOT NULL DEFAULT '';
+ALTER TABLE sheet ADD COLUMN offcut TEXT NOT NULL DEFAULT '';
+CREATE INDEX sheet_of_stock ON sheet(stock) WHERE stock <> '' AND cut = 0;
+
+CREATE TABLE stock(
+    id TEXT PRIMARY KEY,
+    record TEXT NOT NULL,
+    material TEXT NOT NULL,
+    quantity INTEGER,
+    note TEXT NOT NULL DEFAULT '',
+    from_job TEXT NOT NULL DEFAULT '',
+    from_sheet INTEGER NOT NULL DEFAULT 0,
+    created_ms INTEGER NOT NULL,
+    updated_ms INTEGER NOT NULL) WITHOUT ROWID;
+
+CREATE TABLE preset(
+    id TEXT PRIMARY KEY,
+    record TEXT NOT NULL) WITHOUT ROWID;
+
+CREATE TABLE setting(
+    key TEXT PRIMARY KEY,
+    value TEXT NOT NULL) WITHOUT ROWID;
 )sql"};
 
 // Durability first: FULL syncs every commit, and only the writer's own checkpoints touch the file.
@@ -133,28 +175,37 @@ PRAGMA wal_autocheckpoint = 0;
 
 }  // namespace
 
-void prepare_schema(SQLite::Database& database) {
-    try {
-        database.exec(kPragmas);
-        const std::string verdict = database.execAndGet("PRAGMA quick_check(1)").getString();
-        if (verdict != "ok") {
-            throw DatabaseUnusable("the database is damaged: " + verdict);
-        }
-    } catch (const SQLite::Exception& error) {
-        throw DatabaseUnusable(fmt::format("the database can't be opened: {}", error.what()));
-    }
-    const int version = database.execAndGet("PRAGMA user_version").getInt();
-    const int known = static_cast<int>(kMigrations.size());
-    if (version > known) {
+void prepare_connection(SQLite::Database& database) {
+    database.exec(kPragmas);
+}
+
+int schema_version(SQLite::Database& database) {
+    return database.execAndGet("PRAGMA user_version").getInt();
+}
+
+int newest_schema() {
+    return static_cast<int>(kMigrations.size());
+}
+
+std::string quick_check(SQLite::Database& database) {
+    const std::string verdict = database.execAndGet("PRAGMA quick_check(1)").getString();
+    return verdict == "ok" ? std::string() : verdict;
+}
+
+void migrate(SQLite::Database& database) {
+    const int version = schema_version(database);
+    if (version > newest_schema()) {
         throw DatabaseUnusable(
             fmt::format("the database has schema {}, this Leafcutter knows {}: use the newer one",
-                        version, known));
+                        version, newest_schema()));
     }
-    for (int step = version; step < known; ++step) {
+    for (int step = version; step < newest_schema(); ++step) {
         SQLite::Transaction transaction(database);
         database.exec(kMigrations[static_cast<std::size_t>(step)]);
         database.exec(fmt::format("PRAGMA user_version = {}", step + 1));
+        crash_point("migrate.before-commit");
         transaction.commit();
+        crash_point("migrate.after-commit");
     }
 }
 

@@ -1,15 +1,17 @@
-#include "server/store/cut_store.h"
+#include "server/store/sqlite/cuts.h"
 
 #include <algorithm>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
-#include "server/store/cut_rows.h"
-#include "server/store/database.h"
-#include "server/store/event_log.h"
+#include "server/crash_point.h"
 #include "server/store/ids.h"
-#include "server/store/job_store.h"
+#include "server/store/sqlite/cut_rows.h"
+#include "server/store/sqlite/database.h"
+#include "server/store/sqlite/events.h"
+#include "server/store/sqlite/job_rows.h"
+#include "server/store/sqlite/stock.h"
 
 namespace leafcutter::server {
 
@@ -67,13 +69,16 @@ void check_sheets(SQLite::Database& database, const std::string& job, std::vecto
 }
 
 void count_sheet_as_cut(SQLite::Database& database, const CutRecord& cut) {
-    SQLite::Statement mark(database, "UPDATE sheet SET cut = 1 WHERE job = ? AND number = ?");
+    SQLite::Statement mark(database,
+                           "UPDATE sheet SET cut = 1 WHERE job = ? AND number = ? AND cut = 0");
     mark.bind(1, cut.job);
     mark.bind(2, cut.sheet());
-    mark.exec();
+    if (mark.exec() > 0) {
+        book_cut_sheet(database, cut.job, cut.sheet());
+    }
     if (!sheets_of(database, cut.job, Which::Uncut).empty() ||
         !move_job(database, cut.job, JobState::Ready, JobState::Done)) {
-        tell_job(database, cut, fmt::format("sheet {} cut", cut.sheet()));
+        tell_job_of(database, cut, fmt::format("sheet {} cut", cut.sheet()));
     }
 }
 
@@ -100,7 +105,7 @@ std::string insert_cut(SQLite::Database& database, const NewCut& wanted) {
     insert.bind(6, now);
     insert.exec();
     tell(database, cut, "waiting");
-    tell_job(database, cut, "cut waiting");
+    tell_job_of(database, cut, "cut waiting");
     return cut.id;
 }
 
@@ -119,24 +124,27 @@ bool is_open_ended(SQLite::Database& database, const CutRecord& cut) {
 
 }  // namespace
 
-CutRecord CutStore::add(const std::string& job,
-                        const std::string& device,
-                        std::vector<int> sheets) {
-    CutRecord cut;
+std::vector<CutRecord> SqliteCutStore::add(const std::string& job,
+                                           const std::vector<CutWish>& wishes) {
+    std::vector<CutRecord> cuts;
     database_.write([&](SQLite::Database& database) {
-        check_sheets(database, job, sheets);
-        cut = find_cut(database, insert_cut(database, {job, device, sheets})).value();
+        for (const CutWish& wish : wishes) {
+            std::vector<int> sheets = wish.sheets;
+            check_sheets(database, job, sheets);
+            const std::string id = insert_cut(database, {job, wish.device, sheets});
+            cuts.push_back(find_cut(database, id).value());
+        }
     });
-    return cut;
+    return cuts;
 }
 
-std::optional<CutRecord> CutStore::find(const std::string& id) const {
+std::optional<CutRecord> SqliteCutStore::find(const std::string& id) const {
     std::optional<CutRecord> cut;
     database_.read([&](SQLite::Database& database) { cut = find_cut(database, id); });
     return cut;
 }
 
-std::vector<CutRecord> CutStore::list(int limit) const {
+std::vector<CutRecord> SqliteCutStore::list(int limit) const {
     std::vector<CutRecord> cuts;
     database_.read([&](SQLite::Database& database) {
         SQLite::Statement query(database,
@@ -149,13 +157,16 @@ std::vector<CutRecord> CutStore::list(int limit) const {
     return cuts;
 }
 
-std::vector<CutRecord> CutStore::open_on(const std::string& device) const {
+std::vector<CutRecord> SqliteCutStore::open_on(const std::string& device) const {
     std::vector<CutRecord> cuts;
     database_.read([&](SQLite::Database& database) { cuts = open_cuts(database, device); });
     return cuts;
 }
 
-bool CutStore::move(const std::string& id, CutState from, CutState to, const std::string& reason) {
+bool SqliteCutStore::move(const std::string& id,
+                          CutState from,
+                          CutState to,
+                          const std::string& reason) {
     bool moved = false;
     database_.write([&](SQLite::Database& database) {
         const auto cut = find_cut(database, id);
@@ -164,7 +175,7 @@ bool CutStore::move(const std::string& id, CutState from, CutState to, const std
     return moved;
 }
 
-bool CutStore::arm(const CutRecord& wanted) {
+bool SqliteCutStore::arm(const CutRecord& wanted) {
     bool armed = false;
     database_.write([&](SQLite::Database& database) {
         for (const CutRecord& other : open_cuts(database, wanted.device)) {
@@ -179,7 +190,7 @@ bool CutStore::arm(const CutRecord& wanted) {
     return armed;
 }
 
-bool CutStore::begin_sheet(const CutRecord& cut) {
+bool SqliteCutStore::begin_sheet(const CutRecord& cut) {
     bool begun = false;
     database_.write([&](SQLite::Database& database) {
         if (cut.state != CutState::Armed || !move_cut(database, cut, CutState::Cutting, "")) {
@@ -193,13 +204,14 @@ bool CutStore::begin_sheet(const CutRecord& cut) {
         intent.bind(2, cut.sheet());
         intent.bind(3, cut.program_sha256);
         intent.bind(4, wall_clock_ms());
+        crash_point("begin-sheet.before-intent");
         intent.exec();
         begun = true;
     });
     return begun;
 }
 
-bool CutStore::finish_sheet(const CutRecord& wanted, const CutProgress& progress) {
+bool SqliteCutStore::finish_sheet(const CutRecord& wanted, const CutProgress& progress) {
     bool finished = false;
     database_.write([&](SQLite::Database& database) {
         const auto cut = find_cut(database, wanted.id);
@@ -220,11 +232,11 @@ bool CutStore::finish_sheet(const CutRecord& wanted, const CutProgress& progress
     return finished;
 }
 
-void CutStore::record_progress(const std::string& id, const CutProgress& progress) {
+void SqliteCutStore::record_progress(const std::string& id, const CutProgress& progress) {
     database_.write([&](SQLite::Database& database) { set_progress(database, id, progress); });
 }
 
-void CutStore::record_beam(const std::string& id, const BeamRecord& beam) {
+void SqliteCutStore::record_beam(const std::string& id, const BeamRecord& beam) {
     database_.write([&](SQLite::Database& database) {
         SQLite::Statement update(database,
                                  "UPDATE cut SET beam = ?, version = version + 1 WHERE id = ?");
@@ -239,14 +251,14 @@ void CutStore::record_beam(const std::string& id, const BeamRecord& beam) {
     });
 }
 
-bool CutStore::may_be_finished(const CutRecord& cut) const {
+bool SqliteCutStore::may_be_finished(const CutRecord& cut) const {
     bool free = false;
     database_.read([&](SQLite::Database& database) { free = is_open_ended(database, cut); });
     return free;
 }
 
-std::optional<CutRecord> CutStore::add_rest(const CutRecord& of,
-                                            const std::string& program_sha256) {
+std::optional<CutRecord> SqliteCutStore::add_rest(const CutRecord& of,
+                                                  const std::string& program_sha256) {
     std::optional<CutRecord> added;
     database_.write([&](SQLite::Database& database) {
         const auto cut = find_cut(database, of.id);
@@ -268,7 +280,7 @@ std::optional<CutRecord> CutStore::add_rest(const CutRecord& of,
     return added;
 }
 
-std::optional<CutRecord> CutStore::last_begun_on(const std::string& device) const {
+std::optional<CutRecord> SqliteCutStore::last_begun_on(const std::string& device) const {
     std::optional<CutRecord> cut;
     database_.read([&](SQLite::Database& database) {
         SQLite::Statement query(database,
@@ -283,7 +295,7 @@ std::optional<CutRecord> CutStore::last_begun_on(const std::string& device) cons
     return cut;
 }
 
-std::int64_t CutStore::count(CutState state) const {
+std::int64_t SqliteCutStore::count(CutState state) const {
     std::int64_t counted = 0;
     database_.read([&](SQLite::Database& database) {
         SQLite::Statement query(database, "SELECT count(*) FROM cut WHERE state = ?");
@@ -293,7 +305,7 @@ std::int64_t CutStore::count(CutState state) const {
     return counted;
 }
 
-std::vector<std::string> CutStore::recover() {
+std::vector<std::string> SqliteCutStore::recover() {
     std::vector<std::string> devices;
     database_.write([&](SQLite::Database& database) {
         std::vector<CutRecord> open;

@@ -1,12 +1,12 @@
-#include "server/store/device_store.h"
+#include "server/store/sqlite/devices.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "server/store/database.h"
+#include "server/store/sqlite/database.h"
 
 namespace leafcutter::server {
 
-std::vector<DeviceRecord> DeviceStore::list() const {
+std::vector<DeviceRecord> SqliteDeviceStore::list() const {
     std::vector<DeviceRecord> devices;
     database_.read([&](SQLite::Database& database) {
         SQLite::Statement query(database,
@@ -23,7 +23,7 @@ std::vector<DeviceRecord> DeviceStore::list() const {
     return devices;
 }
 
-std::optional<DeviceRecord> DeviceStore::find(const std::string& id) const {
+std::optional<DeviceRecord> SqliteDeviceStore::find(const std::string& id) const {
     for (DeviceRecord& device : list()) {
         if (device.id == id) {
             return std::move(device);
@@ -32,7 +32,7 @@ std::optional<DeviceRecord> DeviceStore::find(const std::string& id) const {
     return std::nullopt;
 }
 
-void DeviceStore::put(const DeviceRecord& device) {
+void SqliteDeviceStore::put(const DeviceRecord& device) {
     database_.write([&](SQLite::Database& database) {
         SQLite::Statement upsert(database,
                                  "INSERT OR REPLACE INTO device(id, name, uri, auto_start, "
@@ -47,7 +47,7 @@ void DeviceStore::put(const DeviceRecord& device) {
     });
 }
 
-bool DeviceStore::remove(const std::string& id) {
+bool SqliteDeviceStore::remove(const std::string& id) {
     bool removed = false;
     database_.write([&](SQLite::Database& database) {
         SQLite::Statement erase(database, "DELETE FROM device WHERE id = ?");

@@ -1,0 +1,43 @@
+// What keeps the daemon's rows. Nothing above knows which engine it is; tests/server/test_store.cpp
+// holds each one to the same rules.
+
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "server/store/cut_store.h"
+#include "server/store/device_store.h"
+#include "server/store/event_log.h"
+#include "server/store/job_store.h"
+#include "server/store/named_records.h"
+#include "server/store/settings.h"
+#include "server/store/stock_store.h"
+
+namespace leafcutter::server {
+
+class Engine {
+public:
+    virtual ~Engine() = default;
+
+    virtual JobStore& jobs() = 0;
+    virtual CutStore& cuts() = 0;
+    virtual DeviceStore& devices() = 0;
+    virtual StockStore& stock() = 0;
+    virtual NamedRecords& materials() = 0;
+    virtual NamedRecords& presets() = 0;
+    virtual Settings& settings() = 0;
+    virtual EventLog& events() = 0;
+
+    // Why it takes no changes; empty: it does. Never throws.
+    virtual std::string trouble() const = 0;
+
+    // Looks through everything that is kept; what is wrong, or nothing. Slow, beside the work.
+    virtual std::string check() const = 0;
+
+    // A copy of all rows as they are now, on disk when this returns; the work goes on meanwhile.
+    // Throws StoreError.
+    virtual void back_up_to(const std::filesystem::path& file) const = 0;
+};
+
+}  // namespace leafcutter::server
