@@ -26,14 +26,14 @@ protected:
         return store->jobs.add({name, {name, 3, sha256_of("abc")}, "{}"}, std::nullopt).job.id;
     }
 
-    // The middle of every page is something else.
+    // The head of every page but the first is something else.
     void damage() {
         store.reset();
         std::fstream file(folder.path() / "leafcutter.db",
                           std::ios::binary | std::ios::in | std::ios::out);
         file.seekg(0, std::ios::end);
         const auto size = static_cast<long>(file.tellg());
-        for (long at = 4096 + 50; at < size; at += 4096) {
+        for (long at = 4096; at < size; at += 4096) {
             file.seekp(at);
             file << std::string(500, 'x');
         }
