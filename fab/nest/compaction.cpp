@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::int64_t kEpoch = 20'000;  // Evaluations of each search between two exchanges.
 constexpr std::size_t kSearches = 2;
+constexpr double kSharedFrom = 0.5;  // From then on all go on from the best of all.
 
 // The narrowest box any part can have.
 double narrowest(const BoardPlan& plan) {
@@ -207,13 +208,15 @@ Packing compact(const BoardPlan& plan,
         idle_epochs = done == spent ? idle_epochs + 1 : 0;
         spent = done;
         best.evaluations = spent;
-        if (ahead != nullptr && accept(ahead->best())) {
+        const bool refused = ahead != nullptr && !accept(ahead->best());
+        if (ahead != nullptr && !refused) {
             best = ahead->best();
             best.evaluations = spent;
             best_area = ahead->best_area();
         }
         for (const auto& search : searches) {
-            if (search->best_area() != best_area) {
+            const bool alone = progress < kSharedFrom && !(refused && search.get() == ahead);
+            if (!alone && search->best_area() != best_area) {
                 search->adopt(best);
             }
         }

@@ -8,8 +8,14 @@ namespace leafcutter::fab {
 
 namespace {
 
+constexpr double kFirstShrink = 0.01;
 constexpr double kFinestShrink = 0.001;
-constexpr double kLongestAttempt = 0.1;  // Of the whole search.
+constexpr double kRestartsUntil = 0.5;  // Of the whole search.
+constexpr std::size_t kStalled = 3;     // Attempts in vain at one target.
+// An attempt is given up after a while, counted in the whole search, and after more for large jobs.
+constexpr double kLongAttempt = 0.015;
+constexpr double kLongestAttempt = 0.1;
+constexpr std::int64_t kLongPerItem = 5000;  // Evaluations.
 
 // Items by hull, largest first, until they make up three quarters of the sum.
 std::vector<std::size_t> large_items(const BoardPlan& plan) {
@@ -63,6 +69,7 @@ Explorer::Explorer(const BoardPlan& plan, const Packing& start, std::uint64_t se
       separation_(board_, random_),
       search_(board_, random_),
       large_(large_items(plan)),
+      start_(start),
       best_(start),
       best_area_(area_taken(plan, start.extent)) {
     board_.restore(best_.positions, best_.extent);
@@ -92,7 +99,7 @@ void Explorer::advance(std::int64_t evaluations, double progress, const std::sto
         const Separation::State state = separation_.run(until, stop);
         if (state == Separation::State::Feasible) {
             succeed();
-        } else if (state == Separation::State::GaveUp || progress_ - begun_ > kLongestAttempt) {
+        } else if (state == Separation::State::GaveUp || takes_long()) {
             fail();
         }
         if (board_.evaluations() == before) {
@@ -101,8 +108,16 @@ void Explorer::advance(std::int64_t evaluations, double progress, const std::sto
     }
 }
 
+bool Explorer::takes_long() const {
+    const double share = progress_ - begun_;
+    const auto patience = kLongPerItem * static_cast<std::int64_t>(board_.items());
+    return share > kLongestAttempt ||
+           (share > kLongAttempt && board_.evaluations() - begun_evaluations_ > patience);
+}
+
 void Explorer::begin_attempt() {
     begun_ = progress_;
+    begun_evaluations_ = board_.evaluations();
     working_ = true;
     compressed_ = compressing();
     if (compressed_) {
@@ -188,6 +203,18 @@ void Explorer::fail() {
     failed_.insert(at, std::move(failed));
     constexpr std::size_t kMostKept = 40;
     failed_.resize(std::min(failed_.size(), kMostKept));
+    if (progress_ < kRestartsUntil && failed_.size() >= kStalled) {
+        restart();
+    }
+}
+
+// The valley it came down to depends on chance: it may be better to come down once more than to
+// stay. Large jobs never get here, since they still gain.
+void Explorer::restart() {
+    best_ = start_;
+    best_area_ = area_taken(plan_, start_.extent);
+    shrink_ = kFirstShrink;
+    failed_.clear();
 }
 
 // Swaps two large parts; small ones that lie within where one goes are carried to where it was.

@@ -35,6 +35,7 @@ private:
     };
 
     bool compressing() const { return progress_ >= 0.8; }
+    bool takes_long() const;
     void begin_attempt();
     void begin_exploring();
     void begin_compressing();
@@ -44,6 +45,7 @@ private:
                  double split);
     void succeed();
     void fail();
+    void restart();
     void disrupt(std::vector<Position>& positions);
     void rehome(const std::vector<std::size_t>& homeless);
 
@@ -53,12 +55,14 @@ private:
     Separation separation_;
     PoseSearch search_;
     std::vector<std::size_t> large_;  // Items that make up three quarters of all hulls.
-    Packing best_;
+    Packing start_;
+    Packing best_;  // Since the last restart.
     double best_area_ = 0.0;
     Extent target_;
-    double shrink_ = 0.01;
+    double shrink_ = 0.01;  // By which an attempt wants less area.
     double progress_ = 0.0;
     double begun_ = 0.0;  // Progress when the attempt began.
+    std::int64_t begun_evaluations_ = 0;
     bool working_ = false;
     bool compressed_ = false;     // The attempt is one of the compressing phase.
     std::vector<Failed> failed_;  // At the present target, least overlap first.
