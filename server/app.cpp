@@ -64,8 +64,10 @@ App::App(const Config& config, AppParts parts)
     // Before any machine is touched: another daemon may have them.
     edge_ = std::make_unique<Edge>(
         edge_options(config), [this](Request& request) { return answer(*this, request); }, hub_);
-    for (const DeviceRecord& device : config.devices) {
-        store_->devices.put(device);
+    if (store_->trouble().empty()) {
+        for (const DeviceRecord& device : config.devices) {
+            store_->devices.put(device);
+        }
     }
     compute_ =
         std::make_unique<ComputeRunner>(*store_, parts_.compute, compute_options(config),
@@ -76,6 +78,7 @@ App::App(const Config& config, AppParts parts)
                     [this](const std::string& device) { hub_.post("device", device); },
                     [this](const std::string& cut) { hub_.post("cut", cut); }, config.stop_policy});
     begin_webhooks(config);
+    housekeeper_ = std::make_unique<Housekeeper>(*store_);
     hub_.start();
     edge_->start();
 }
@@ -93,8 +96,11 @@ App::~App() {
 }
 
 void App::begin_webhooks(const Config& config) {
+    if (!store_->trouble().empty()) {
+        return;  // Nothing happens that could be told, and no place in the log could be kept.
+    }
     for (const WebhookConfig& webhook : config.webhooks) {
-        auto begun = std::make_unique<Webhook>(webhook, store_->events, store_->webhooks);
+        auto begun = std::make_unique<Webhook>(webhook, store_->events, store_->settings);
         const std::scoped_lock lock(webhooks_mutex_);
         webhooks_.push_back(std::move(begun));
     }

@@ -20,6 +20,7 @@
 #include "server/http/http_metrics.h"
 #include "server/queue/compute_runner.h"
 #include "server/queue/device_fleet.h"
+#include "server/queue/housekeeper.h"
 #include "server/store/store.h"
 #include "server/webhook/webhook.h"
 
@@ -65,6 +66,7 @@ public:
     HttpMetrics& http_metrics() { return http_metrics_; }
     const std::vector<std::unique_ptr<Webhook>>& webhooks() const { return webhooks_; }
     DeviceFleet& fleet() { return *fleet_; }
+    Housekeeper& housekeeper() { return *housekeeper_; }
     EventHub& hub() { return hub_; }
     const AppParts& parts() const { return parts_; }
     const std::filesystem::path& burn_logs() const { return burn_logs_; }
@@ -88,6 +90,7 @@ private:
     HttpMetrics http_metrics_;
     std::mutex webhooks_mutex_;  // Guards the list while it is built and taken down.
     std::vector<std::unique_ptr<Webhook>> webhooks_;
+    std::unique_ptr<Housekeeper> housekeeper_;
     std::unique_ptr<Edge> edge_;
 };
 

@@ -4,11 +4,13 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "server/auth/secrets.h"
 #include "server/store/account_store.h"
 #include "server/store/blobs.h"
 #include "server/store/ids.h"
+#include "server/store/store_error.h"
 
 namespace leafcutter::server {
 
@@ -58,9 +60,7 @@ Accounts::Accounts(AccountStore& store) : store_(store) {
     }
     const std::int64_t now = wall_clock_ms();
     for (Session& session : stored.sessions) {
-        if (is_over(session, now)) {
-            store_.remove_session(session.token_hash);
-        } else {
+        if (!is_over(session, now)) {
             session.used_ms = now;  // Uses are not written down: a restart counts as one.
             sessions_.emplace(session.token_hash, std::move(session));
         }
@@ -121,7 +121,11 @@ NewSecret Accounts::begin_session(const std::string& user) {
     const std::int64_t now = wall_clock_ms();
     const std::string token = new_secret();
     const Session session{sha256_of(token), user, now, now};
-    store_.put(session);
+    try {
+        store_.put(session);
+    } catch (const StoreError& error) {  // A daemon that only reads can still be looked at.
+        spdlog::warn("session of {}: until the daemon stops: {}", user, error.what());
+    }
     {
         const std::scoped_lock lock(mutex_);
         sessions_.emplace(session.token_hash, session);

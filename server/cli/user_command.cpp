@@ -16,8 +16,8 @@
 #include "server/cli/command.h"
 #include "server/config.h"
 #include "server/store/account_store.h"
-#include "server/store/database.h"
 #include "server/store/ids.h"
+#include "server/store/sqlite/engine.h"
 #include "server/store/state_dir.h"
 
 namespace leafcutter::server {
@@ -85,8 +85,8 @@ template <typename Act>
 void with_accounts(const UserOptions& options, Act act) {
     const StateDir folder(options.state.empty() ? default_state_dir()
                                                 : std::filesystem::path(options.state));
-    Database database(folder.path() / "leafcutter.db", nullptr);
-    AccountStore store(database);
+    const OpenedEngine opened = open_sqlite(folder.path(), folder.path() / "backups", nullptr);
+    AccountStore& store = opened.engine->accounts();
     Accounts accounts(store);
     try {
         act(accounts, store);

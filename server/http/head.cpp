@@ -11,8 +11,8 @@ namespace leafcutter::server {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kMethods{"GET", "HEAD",   "POST",
-                                                   "PUT", "DELETE", "OPTIONS"};
+constexpr std::array<std::string_view, 7> kMethods{"GET",   "HEAD",   "POST",   "PUT",
+                                                   "PATCH", "DELETE", "OPTIONS"};
 
 Refusal bad_request(std::string detail) {
     return {400, "bad-request", std::move(detail)};

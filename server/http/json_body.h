@@ -13,6 +13,7 @@
 namespace leafcutter::server {
 
 constexpr std::int64_t kMostJsonBytes = 262144;
+constexpr std::int64_t kMostBulkBytes = 4 << 20;  // Of an import.
 
 // Throws HttpProblem (400).
 nlohmann::json parse_json(std::string_view text);

@@ -10,6 +10,7 @@
 #include "server/http/json_body.h"
 #include "server/store/cut_store.h"
 #include "server/store/job_store.h"
+#include "server/store/store_error.h"
 
 namespace leafcutter::server {
 
@@ -71,6 +72,23 @@ std::string pointer_in(const std::string& message) {
     return pointer;
 }
 
+HttpProblem problem_of(const StoreError& error) {
+    spdlog::error("store: {}", error.what());
+    switch (error.trouble()) {
+        case StoreTrouble::Busy:
+            return {503, "store-busy", "the database is held by somebody else: try again"};
+        case StoreTrouble::Full:
+            return {507, "disk", "the disk is full: nothing was changed"};
+        case StoreTrouble::ReadOnly:
+            return {503, "read-only", "the store takes no changes: see /readyz"};
+        case StoreTrouble::Damaged:
+            return {503, "store-damaged", "this can't be read: the database is damaged"};
+        case StoreTrouble::Failed:
+            break;
+    }
+    return {503, "store-failed", "the database failed: see the log"};
+}
+
 }  // namespace
 
 Response problem_response(const HttpProblem& problem) {
@@ -121,6 +139,9 @@ Response response_to(const std::exception& error) {
     if (dynamic_cast<const BlobWriteFailed*>(&error) != nullptr) {
         spdlog::error("blob store: {}", error.what());
         return problem_response({507, "disk", "the file could not be stored"});
+    }
+    if (const auto* store = dynamic_cast<const StoreError*>(&error)) {
+        return problem_response(problem_of(*store));
     }
     spdlog::error("request failed: {}", error.what());  // The client gets no word of its insides.
     return problem_response({500, "internal", "an internal error; the log has more"});

@@ -125,6 +125,9 @@ void DeviceRunner::take_up_next() {
 // The configuration speaks for the operator here; a cut between two sheets goes on first. The rest
 // of a cut that ended early never goes by itself.
 void DeviceRunner::start_next_of(const std::vector<CutRecord>& open) {
+    if (open.empty() || store_.jobs.queue_pause()) {
+        return;
+    }
     const auto begun = std::find_if(
         open.begin(), open.end(), [](const CutRecord& cut) { return occupies_device(cut.state); });
     const auto fresh =

@@ -12,34 +12,28 @@
 
 namespace leafcutter::server {
 
-class Database;
-
 class AccountStore {
 public:
-    explicit AccountStore(Database& database) : database_(database) {}
+    virtual ~AccountStore() = default;
 
-    StoredAccounts load() const;
+    virtual StoredAccounts load() const = 0;
 
     // In the place of the one there was.
-    void put(const User& user);
-    void put(const ApiKey& key);
-    void put(const Session& session);
+    virtual void put(const User& user) = 0;
+    virtual void put(const ApiKey& key) = 0;
+    virtual void put(const Session& session) = 0;
 
     // With the keys and sessions.
-    void remove_user(const std::string& name);
-    void remove_key(const std::string& id);
-    void remove_session(const std::string& token_hash);
-    void remove_sessions_of(const std::string& user);
+    virtual void remove_user(const std::string& name) = 0;
+    virtual void remove_key(const std::string& id) = 0;
+    virtual void remove_session(const std::string& token_hash) = 0;
+    virtual void remove_sessions_of(const std::string& user) = 0;
 
-    void append(std::span<const AuditRecord> records);
+    virtual void append(std::span<const AuditRecord> records) = 0;
 
     // Newest first, below `below_seq` if it is given.
-    std::vector<AuditRecord> audit(std::optional<std::int64_t> below_seq, int limit) const;
-
-private:
-    void erase(const char* statement, const std::string& key);
-
-    Database& database_;
+    virtual std::vector<AuditRecord> audit(std::optional<std::int64_t> below_seq,
+                                           int limit) const = 0;
 };
 
 }  // namespace leafcutter::server

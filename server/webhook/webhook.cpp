@@ -10,7 +10,7 @@
 #include "server/auth/secrets.h"
 #include "server/store/event_log.h"
 #include "server/store/ids.h"
-#include "server/store/webhook_store.h"
+#include "server/store/settings.h"
 #include "server/webhook/post.h"
 
 namespace leafcutter::server {
@@ -38,14 +38,19 @@ std::chrono::seconds webhook_back_off(int failures) {
                                           1h);
 }
 
-Webhook::Webhook(WebhookConfig config, const EventLog& events, WebhookStore& place)
-    : config_(std::move(config)), events_(events), place_(place) {
-    const std::optional<std::int64_t> known = place_.told(config_.url);
-    told_ = known.value_or(events_.last_seq());
+Webhook::Webhook(WebhookConfig config, const EventLog& events, Settings& settings)
+    : config_(std::move(config)), events_(events), settings_(settings) {
+    const std::optional<std::string> known = settings_.get(place_key());
+    told_ = known ? nlohmann::json::parse(*known).get<std::int64_t>() : events_.last_seq();
     if (!known) {
-        place_.set_told(config_.url, told_);
+        settings_.put(place_key(), std::to_string(told_));
     }
     thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
+}
+
+// The event log is the queue of what is still to be told; this is the hook's place in it.
+std::string Webhook::place_key() const {
+    return fmt::format("webhook.told:{}", config_.url);
 }
 
 Webhook::~Webhook() {
@@ -103,7 +108,7 @@ bool Webhook::tell_next(const std::stop_token& stop) {
 }
 
 void Webhook::pass(const EventRecord& event) {
-    place_.set_told(config_.url, event.seq);
+    settings_.put(place_key(), std::to_string(event.seq));
     told_ = event.seq;
 }
 

@@ -23,7 +23,7 @@
 namespace leafcutter::server {
 
 class EventLog;
-class WebhookStore;
+class Settings;
 
 struct WebhookConfig {
     std::string url;     // http:// or https://
@@ -45,7 +45,7 @@ public:
     static constexpr int kMostFailures = 35;
 
     // A hook that is new is told of what happens from now on.
-    Webhook(WebhookConfig config, const EventLog& events, WebhookStore& place);
+    Webhook(WebhookConfig config, const EventLog& events, Settings& settings);
     ~Webhook();
     Webhook(const Webhook&) = delete;
     Webhook& operator=(const Webhook&) = delete;
@@ -63,10 +63,11 @@ private:
     bool tell_next(const std::stop_token& stop);
     bool deliver(const EventRecord& event);
     void pass(const EventRecord& event);
+    std::string place_key() const;
 
     const WebhookConfig config_;
     const EventLog& events_;
-    WebhookStore& place_;
+    Settings& settings_;
     std::atomic<std::int64_t> told_{0};
     std::atomic<int> failures_{0};
 

@@ -9,7 +9,7 @@
 #include "server/auth/login_limit.h"
 #include "server/auth/secrets.h"
 #include "server/store/account_store.h"
-#include "server/store/database.h"
+#include "server/store/sqlite/engine.h"
 #include "tests/support/temp_dir.h"
 
 namespace leafcutter::server {
@@ -23,16 +23,15 @@ protected:
 
     void open() {
         accounts.reset();
-        store.reset();
-        database.reset();
-        database = std::make_unique<Database>(folder.path() / "leafcutter.db", nullptr);
-        store = std::make_unique<AccountStore>(*database);
+        opened = {};
+        opened = open_sqlite(folder.path(), folder.path() / "backups", nullptr);
+        store = &opened.engine->accounts();
         accounts = std::make_unique<Accounts>(*store);
     }
 
     test::TempDir folder;
-    std::unique_ptr<Database> database;
-    std::unique_ptr<AccountStore> store;
+    OpenedEngine opened;
+    AccountStore* store = nullptr;  // Of `opened`.
     std::unique_ptr<Accounts> accounts;
 };
 

@@ -169,7 +169,8 @@ Response create_cut(App& app, Request& request) {
     if (runner->record().auto_start) {
         admit(request, Role::Operator, Beam::MayFire);
     }
-    const CutRecord cut = app.store().cuts.add(job.id, runner->record().id, sheets_in(body));
+    const CutRecord cut =
+        app.store().cuts.add(job.id, {{runner->record().id, sheets_in(body)}}).front();
     runner->wake();
     Response response = json_response(cut_json(app, cut), 201);
     response.headers["Location"] = "/api/v1/cuts/" + cut.id;

@@ -17,12 +17,17 @@ Response show_health(App&, Request&) {
 
 Response show_readiness(App& app, Request&) {
     constexpr std::int64_t kRoomForAJob = 16LL << 20;
-    const bool database = app.store().database.is_healthy();
+    const std::string trouble = app.store().trouble();
+    const bool database = trouble.empty();
     const bool disk = app.store().blobs.has_room_for(kRoomForAJob);
     const bool ready = database && disk;
-    return json_response(
-        {{"status", ready ? "ready" : "not-ready"}, {"database", database}, {"disk", disk}},
-        ready ? 200 : 503);
+    return json_response({{"status", ready ? "ready" : "not-ready"},
+                          {"database", database},
+                          {"disk", disk},
+                          {"read_only", !database},
+                          {"trouble", trouble},
+                          {"notice", app.store().notice()}},
+                         ready ? 200 : 503);
 }
 
 Response show_metrics(App& app, Request&) {
@@ -32,8 +37,12 @@ Response show_metrics(App& app, Request&) {
     return response;
 }
 
-Response show_version(App&, Request&) {
-    return json_response({{"name", "leafcutter"}, {"version", LEAFCUTTER_VERSION}, {"api", "v1"}});
+Response show_version(App& app, Request&) {
+    return json_response({{"name", "leafcutter"},
+                          {"version", LEAFCUTTER_VERSION},
+                          {"api", "v1"},
+                          {"read_only", !app.store().trouble().empty()},
+                          {"notice", app.store().notice()}});
 }
 
 Response show_openapi(App&, Request&) {

@@ -14,6 +14,7 @@
 #include "server/http/json_body.h"
 #include "server/http/multipart.h"
 #include "server/http/problem.h"
+#include "server/stock_choice.h"
 
 namespace leafcutter::server {
 
@@ -64,8 +65,11 @@ NewJob job_from_json(App& app, const Request& request) {
 
 // Parameters are refused before any work starts; what is kept is what was given.
 void check_params(App& app, NewJob& job) {
-    job.params_json = dump_json(parse_json(job.params_json));
-    app.parts().check_params(job.params_json);
+    const json params = parse_json(job.params_json);
+    job.params_json = dump_json(params);
+    app.parts().check_params(names_stock(params)
+                                 ? dump_json(with_stock(params, app.store().stock.list()))
+                                 : job.params_json);
 }
 
 std::optional<IdempotencyKey> key_of(const Request& request, const NewJob& job) {
@@ -132,6 +136,7 @@ Response list_jobs(App& app, Request& request) {
             throw HttpProblem(400, "bad-query", "state: there is no such state");
         }
     }
+    query.dead_letters = request.query.count("dead_letters") != 0;
     json jobs = json::array();
     const std::vector<JobRecord> records = app.store().jobs.list(query);
     for (const JobRecord& job : records) {

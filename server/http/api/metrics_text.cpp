@@ -10,7 +10,6 @@
 
 #include "drivers/device.h"
 #include "server/app.h"
-#include "server/store/queue_ages.h"
 
 namespace leafcutter::server {
 
@@ -39,7 +38,7 @@ std::string queue_lines(App& app) {
                             app.store().cuts.count(state));
     }
     constexpr double kMilli = 1e-3;
-    const QueueAges ages = queue_ages(app.store().database);
+    const QueueAges ages = app.store().queue_ages();
     text += header("leafcutter_queue_age_seconds", "gauge", "Wait of the longest-waiting one.");
     text += fmt::format("leafcutter_queue_age_seconds{{queue=\"jobs\"}} {}\n",
                         kMilli * static_cast<double>(ages.oldest_job_ms));
@@ -99,7 +98,7 @@ std::string process_lines(App& app) {
     text += gauge("leafcutter_disk_free_bytes", "Room in the state folder's file system.",
                   ignored ? 0.0 : static_cast<double>(room.available));
     text += gauge("leafcutter_database_healthy", "Whether the database takes changes.",
-                  app.store().database.is_healthy() ? 1.0 : 0.0);
+                  app.store().trouble().empty() ? 1.0 : 0.0);
     text += header("leafcutter_build_info", "gauge", "The version, as a label.");
     text += fmt::format("leafcutter_build_info{{version=\"{}\"}} 1\n", LEAFCUTTER_VERSION);
     return text;
@@ -108,10 +107,12 @@ std::string process_lines(App& app) {
 }  // namespace
 
 std::string metrics_text(App& app) {
-    return queue_lines(app) + device_lines(app) + event_lines(app) + process_lines(app) +
-           header("leafcutter_commit_seconds", "histogram", "Commits of the database, with sync.") +
-           app.store().database.commit_latency().text("leafcutter_commit_seconds", "") +
-           app.http_metrics().text();
+    std::string text = queue_lines(app) + device_lines(app) + event_lines(app) + process_lines(app);
+    if (const LatencyHistogram* commits = app.store().commit_latency()) {
+        text += header("leafcutter_commit_seconds", "histogram", "Commits, with their sync.");
+        text += commits->text("leafcutter_commit_seconds", "");
+    }
+    return text + app.http_metrics().text();
 }
 
 }  // namespace leafcutter::server
