@@ -66,8 +66,8 @@ public:
     void console(std::string_view line) override;
     void set_overrides(const std::array<int, 3>& percent) override;
 
-    // $ settings, as the controller listed them or accepted them since.
-    const std::map<int, double>& settings() const { return settings_; }
+    std::vector<MachineSetting> settings() const override;
+    void set_setting(std::string_view key, double value) override;
     void lose_link(const std::string& reason) override;
     std::string_view last_words() const override { return "\x18"; }
 

@@ -40,6 +40,7 @@ constexpr Route kRoutes[] = {
     {"PUT", "/api/v1/devices/{id}", put_device},
     {"DELETE", "/api/v1/devices/{id}", delete_device},
     {"POST", "/api/v1/devices/{id}/commands", command_device},
+    {"GET", "/api/v1/devices/{id}/settings", list_settings},
     {"GET", "/api/v1/ports", list_ports},
     {"GET", "/api/v1/materials", list_materials},
     {"GET", "/api/v1/materials/{id}", show_material},
