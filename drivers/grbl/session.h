@@ -169,6 +169,7 @@ private:
     JobProgress progress_;
     GrblOptions options_;
     std::optional<std::array<int, 3>> wanted_overrides_;
+    std::array<int, 3> expected_overrides_{};  // Once the last step is served.
     Time overrides_stepped_;
     std::optional<int> sub_state_;
     std::map<int, double> settings_;

@@ -34,22 +34,29 @@ constexpr char byte_of(int code) {
     return static_cast<char>(code);
 }
 
-// The byte that brings a percentage nearer; `first` resets it, then come +10, -10, +1, -1.
-char override_step(int now, int wanted, int first) {
+struct OverrideStep {
+    char byte = 0;
+    int reaches = 0;  // Percent
+};
+
+// What brings a percentage nearer; `first` resets it, then come +10, -10, +1, -1.
+OverrideStep override_step(int now, int wanted, int first) {
     const int difference = wanted - now;
     if (wanted == 100) {
-        return byte_of(first);
+        return {byte_of(first), 100};
     }
     if (difference >= 10 || difference <= -10) {
-        return byte_of(difference > 0 ? first + 1 : first + 2);
+        return difference > 0 ? OverrideStep{byte_of(first + 1), now + 10}
+                              : OverrideStep{byte_of(first + 2), now - 10};
     }
-    return byte_of(difference > 0 ? first + 3 : first + 4);
+    return difference > 0 ? OverrideStep{byte_of(first + 3), now + 1}
+                          : OverrideStep{byte_of(first + 4), now - 1};
 }
 
 }  // namespace
 
 // One step of each at a time: the firmware drops repeats that come before it has served the first.
-// The next follows when a report shows where it has got.
+// The next follows when a report shows that it was served; one that was under way already doesn't.
 void GrblSession::step_overrides() {
     if (!wanted_overrides_) {
         return;
@@ -63,14 +70,18 @@ void GrblSession::step_overrides() {
     constexpr int kFeed = 0x90;
     constexpr int kRapid = 0x95;
     constexpr int kPower = 0x99;
-    if (now[0] != wanted[0]) {
-        send_realtime(override_step(now[0], wanted[0], kFeed));
-    }
+    expected_overrides_ = wanted;
+    const auto step = [&](std::size_t which, int first) {
+        if (now.at(which) != wanted.at(which)) {
+            const OverrideStep next = override_step(now.at(which), wanted.at(which), first);
+            send_realtime(next.byte);
+            expected_overrides_.at(which) = next.reaches;
+        }
+    };
+    step(0, kFeed);
+    step(2, kPower);
     if (now[1] != wanted[1]) {
         send_realtime(byte_of(kRapid + (wanted[1] == 100 ? 0 : (wanted[1] == 50 ? 1 : 2))));
-    }
-    if (now[2] != wanted[2]) {
-        send_realtime(override_step(now[2], wanted[2], kPower));
     }
     overrides_stepped_ = now_;
     poll_soon();

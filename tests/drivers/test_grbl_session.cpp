@@ -220,6 +220,23 @@ TEST(GrblSession, BringsOverridesWhereTheyAreWantedStepByStep) {
     EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done);
 }
 
+// Reports that were on their way already show the step before.
+TEST(GrblSession, BringsOverridesWhereTheyAreWantedOverASlowLink) {
+    for (const int turns : {10, 50, 100, 160}) {  // Of 5 ms
+        SteppedMachine bench;
+        bench.delay = [turns] { return turns; };
+        ASSERT_TRUE(bench.attach());
+        bench.session().start(zigzag(60));
+        ASSERT_TRUE(bench.run_until([&] { return burnt_mm(bench.machine()) > 100.0; }));
+        const std::array<int, 3> wanted{137, 50, 63};
+        bench.session().set_overrides(wanted);
+        EXPECT_TRUE(bench.run_until(
+            [&] { return bench.session().status().override_percent == wanted; }, 30.0))
+            << turns << ": " << bench.session().status().override_percent[0];
+        bench.session().cancel();
+    }
+}
+
 TEST(GrblSession, StaysHeldUntilResumed) {
     SteppedMachine bench;
     ASSERT_TRUE(bench.attach());
