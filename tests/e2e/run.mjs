@@ -202,8 +202,8 @@ step('the cut is played from the exact program', async () => {
   const slider = page.getByRole('slider');
   await slider.waitFor();
   await page.waitForFunction(() => document.querySelectorAll('.burn path').length > 0);
-  const end = Number(await slider.getAttribute('max'));
-  await slider.fill(String(end / 2));
+  const end = Math.floor(Number(await slider.getAttribute('max')));
+  await slider.fill(String(Math.round(end / 2)));
   const half = await page.evaluate(`(${burntLength})()`);
   await slider.fill(String(end));
   const whole = await page.evaluate(`(${burntLength})()`);
