@@ -36,10 +36,17 @@ export type Job = {
     readonly state?: "uncut" | "cut";
     readonly program_sha256?: string;
     readonly estimated_s?: number;
+    readonly size_mm?: readonly (number)[];
+    readonly stock?: string | null;
   })[];
   readonly cuts: readonly (string)[];
-  readonly actions: readonly ("cancel" | "remove" | "cut" | "recompute")[];
+  readonly actions: readonly ("cancel" | "remove" | "cut" | "recompute" | "recut" | "retry" | "move")[];
   readonly recut_of?: string | null;
+  readonly priority?: number;
+  readonly attempt?: number;
+  readonly retries?: number;
+  readonly retry_cause?: string;
+  readonly dead_letter?: boolean;
 };
 
 export type Artifact = {
@@ -212,10 +219,107 @@ export type JobParams = {
   readonly cut?: CutParams;
 };
 
+export type Queue = {
+  readonly paused: boolean;
+  readonly reason: string;
+  readonly queued: number;
+  readonly computing: number;
+  readonly dead_letters: number;
+  readonly next: readonly ({
+    readonly id?: string;
+    readonly name?: string;
+    readonly priority?: number;
+  })[];
+};
+
+export type StockEntry = {
+  readonly id: string;
+  readonly material?: string;
+  readonly width_mm?: number;
+  readonly height_mm?: number;
+  readonly outline?: readonly (readonly (number)[])[];
+  readonly holes?: readonly (readonly (readonly (number)[])[])[];
+  readonly defects?: readonly (readonly (readonly (number)[])[])[];
+  readonly keep_out?: readonly (readonly (readonly (number)[])[])[];
+  readonly quantity?: number | null;
+  readonly cost?: number;
+  readonly note?: string;
+  readonly kind?: "sheet" | "remnant";
+  readonly planned?: number;
+  readonly from_job?: string | null;
+  readonly from_sheet?: number | null;
+  readonly created_at?: string;
+  readonly updated_at?: string;
+};
+
+export type Stock = {
+  readonly format?: "leafcutter-stock/1";
+  readonly stock: readonly (StockEntry)[];
+};
+
+export type Preset = {
+  readonly id?: string;
+  readonly name?: string;
+  readonly description?: string;
+  readonly params: JobParams;
+  readonly origin?: "built-in" | "changed" | "own";
+};
+
+export type Presets = {
+  readonly presets: readonly (Preset)[];
+};
+
+export type Retention = {
+  readonly jobs_days?: number;
+  readonly packages_days?: number;
+  readonly events_days?: number;
+  readonly backup_every_min?: number;
+  readonly backups_kept?: number;
+};
+
+export type Role = "viewer" | "submitter" | "operator" | "admin";
+
+export type Session = {
+  readonly accounts: boolean;
+  readonly authenticated: boolean;
+  readonly user: string | null;
+  readonly role: Role | null;
+  readonly may_fire: boolean;
+  readonly csrf_token: string | null;
+};
+
+export type User = {
+  readonly name: string;
+  readonly role: Role;
+  readonly created_at: string;
+};
+
+export type Key = {
+  readonly id: string;
+  readonly user: string;
+  readonly label: string;
+  readonly role: Role;
+  readonly may_fire: boolean;
+  readonly created_at: string;
+  readonly expires_at: string | null;
+  readonly used_at: string | null;
+};
+
+export type AuditEntry = {
+  readonly seq: number;
+  readonly at: string;
+  readonly user: string | null;
+  readonly remote: string;
+  readonly action: string;
+  readonly note: string;
+  readonly status: number;
+};
+
 export type Call =
   | "GET /jobs"
   | "POST /jobs"
   | "GET /jobs/{id}"
+  | "PATCH /jobs/{id}"
   | "DELETE /jobs/{id}"
   | "POST /jobs/{id}/recompute"
   | "POST /jobs/{id}/recut"
@@ -240,6 +344,7 @@ export type Call =
   | "POST /devices/{id}/commands"
   | "GET /ports"
   | "GET /materials"
+  | "POST /materials"
   | "GET /materials/{id}"
   | "PUT /materials/{id}"
   | "DELETE /materials/{id}"
@@ -248,4 +353,34 @@ export type Call =
   | "GET /openapi.json"
   | "GET /healthz"
   | "GET /readyz"
-  | "GET /metrics";
+  | "GET /metrics"
+  | "POST /jobs/{id}/retry"
+  | "GET /queue"
+  | "POST /queue/pause"
+  | "POST /queue/resume"
+  | "GET /stock"
+  | "POST /stock"
+  | "GET /stock/{id}"
+  | "PUT /stock/{id}"
+  | "DELETE /stock/{id}"
+  | "GET /presets"
+  | "POST /presets"
+  | "GET /presets/{id}"
+  | "PUT /presets/{id}"
+  | "DELETE /presets/{id}"
+  | "GET /retention"
+  | "PUT /retention"
+  | "GET /backups"
+  | "POST /backups"
+  | "GET /session"
+  | "POST /session"
+  | "DELETE /session"
+  | "GET /users"
+  | "POST /users"
+  | "GET /users/{name}"
+  | "PUT /users/{name}"
+  | "DELETE /users/{name}"
+  | "GET /keys"
+  | "POST /keys"
+  | "DELETE /keys/{id}"
+  | "GET /audit";
