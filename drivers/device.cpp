@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <initializer_list>
 #include <optional>
 
 #include <fmt/format.h>
@@ -71,51 +72,102 @@ std::optional<std::string_view> query_of(std::string_view uri, std::string_view 
     return rest.substr(std::min<std::size_t>(rest.size(), 1));
 }
 
-// "power_cap=PERCENT" is taken out of the query; what is left goes to the transport.
-struct GrblAddress {
-    std::string transport;
-    double power_cap_percent = 100.0;
+// A number that a session takes from the query of its URI.
+struct SessionOption {
+    std::string_view key;
+    double least = 0.0;
+    double most = 0.0;
+    double& value;
 };
 
-GrblAddress split_grbl_address(std::string_view address) {
-    constexpr std::string_view kKey = "power_cap=";
+double number_in(std::string_view text, const SessionOption& option, std::string_view address) {
+    const char* const last = text.data() + text.size();
+    double value = 0.0;
+    const auto [stop, fault] = std::from_chars(text.data(), last, value);
+    if (fault != std::errc{} || stop != last || !(value >= option.least && value <= option.most)) {
+        throw std::invalid_argument(fmt::format("device \"{}\": {} must be a number from {} to {}",
+                                                address, option.key, option.least, option.most));
+    }
+    return value;
+}
+
+// Takes them out of the query. Returns what is left, for the transport.
+std::string take_options(std::string_view address, std::initializer_list<SessionOption> options) {
     const std::size_t question = std::min(address.find('?'), address.size());
-    GrblAddress result;
     std::string query;
     for (std::size_t at = question + 1; at < address.size();) {
         const std::size_t end = std::min(address.find('&', at), address.size());
         const std::string_view pair = address.substr(at, end - at);
         at = end + 1;
-        if (!starts_with(pair, kKey)) {
+        const std::size_t equals = std::min(pair.find('='), pair.size());
+        const auto option = std::find_if(
+            options.begin(), options.end(),
+            [&](const SessionOption& each) { return each.key == pair.substr(0, equals); });
+        if (option == options.end()) {
             query += fmt::format("{}{}", query.empty() ? "?" : "&", pair);
-            continue;
-        }
-        const std::string_view value = pair.substr(kKey.size());
-        const char* const last = value.data() + value.size();
-        const auto [stop, fault] = std::from_chars(value.data(), last, result.power_cap_percent);
-        const bool fits = result.power_cap_percent > 0.0 && result.power_cap_percent <= 100.0;
-        if (fault != std::errc{} || stop != last || !fits) {
-            throw std::invalid_argument(
-                fmt::format("device \"{}\": power_cap must be a percentage above 0", address));
+        } else {
+            option->value =
+                number_in(pair.substr(std::min(equals + 1, pair.size())), *option, address);
         }
     }
-    result.transport = std::string(address.substr(0, question)) + query;
-    return result;
+    return std::string(address.substr(0, question)) + query;
 }
 
-SessionDevice::MakeSession grbl_session(double power_cap_percent) {
-    return [power_cap_percent](Session::Time now) -> std::unique_ptr<Session> {
-        return std::make_unique<GrblSession>(now, power_cap_percent);
-    };
+std::string_view without_question(std::string_view query) {
+    return query.substr(std::min<std::size_t>(1, query.size()));
 }
 
-std::unique_ptr<Session> marlin_session(Session::Time now) {
-    return std::make_unique<MarlinSession>(MarlinSession::Firmware::Marlin, now);
+struct SessionAddress {
+    std::string transport;
+    SessionDevice::MakeSession make_session;
+};
+
+SessionAddress grbl_address(std::string_view address) {
+    GrblOptions options;
+    double poll_ms = static_cast<double>(options.poll_interval.count());
+    std::string transport =
+        take_options(address, {{"power_cap", 0.1, 100.0, options.power_cap_percent},
+                               {"poll_ms", 100.0, 1000.0, poll_ms}});
+    options.poll_interval = std::chrono::milliseconds(static_cast<int>(poll_ms));
+    return {std::move(transport), [options](Session::Time now) -> std::unique_ptr<Session> {
+                return std::make_unique<GrblSession>(now, options);
+            }};
 }
 
-std::unique_ptr<Session> smoothie_session(Session::Time now) {
-    return std::make_unique<MarlinSession>(MarlinSession::Firmware::Smoothie, now);
+SessionAddress line_address(MarlinSession::Firmware firmware, std::string_view address) {
+    constexpr double kLongest = 1e5;
+    MarlinOptions options;
+    double s_max = 0.0;
+    std::string transport =
+        take_options(address, {{"power_cap", 0.1, 100.0, options.power_cap_percent},
+                               {"s_max", 0.001, kLongest, s_max},
+                               {"width", 1.0, kLongest, options.bed_mm[0]},
+                               {"height", 1.0, kLongest, options.bed_mm[1]}});
+    options.s_max = s_max > 0.0 ? std::optional(s_max) : std::nullopt;
+    return {std::move(transport),
+            [firmware, options](Session::Time now) -> std::unique_ptr<Session> {
+                return std::make_unique<MarlinSession>(firmware, now, options);
+            }};
 }
+
+using OpenTransport = std::unique_ptr<Transport> (*)(std::string_view address);
+
+// A family of controllers, behind a link or simulated.
+struct Family {
+    std::string_view linked;
+    std::string_view simulated;
+    SessionAddress (*address)(std::string_view text);
+    OpenTransport open_simulated;
+};
+
+constexpr Family kFamilies[] = {
+    {"grbl:", "sim:grbl", grbl_address, open_simulated_grbl},
+    {"marlin:", "sim:marlin",
+     [](std::string_view text) { return line_address(MarlinSession::Firmware::Marlin, text); },
+     open_simulated_marlin},
+    {"smoothie:", "sim:smoothie",
+     [](std::string_view text) { return line_address(MarlinSession::Firmware::Smoothie, text); },
+     open_simulated_smoothie}};
 
 }  // namespace
 
@@ -130,32 +182,16 @@ bool is_device_uri(std::string_view uri) {
 }
 
 std::unique_ptr<Device> open_device(std::string_view uri) {
-    constexpr std::string_view kGrbl = "grbl:";
-    if (starts_with(uri, kGrbl)) {
-        const GrblAddress address = split_grbl_address(uri.substr(kGrbl.size()));
-        return attached(uri, open_transport(address.transport),
-                        grbl_session(address.power_cap_percent));
-    }
-    if (const auto query = query_of(uri, "sim:grbl")) {
-        const GrblAddress address = split_grbl_address(fmt::format("?{}", *query));
-        const std::string_view rest =
-            std::string_view(address.transport)
-                .substr(std::min<std::size_t>(1, address.transport.size()));
-        return attached(uri, open_simulated_grbl(rest), grbl_session(address.power_cap_percent));
-    }
-    if (const auto query = query_of(uri, "sim:marlin")) {
-        return attached(uri, open_simulated_marlin(*query), marlin_session);
-    }
-    if (const auto query = query_of(uri, "sim:smoothie")) {
-        return attached(uri, open_simulated_smoothie(*query), smoothie_session);
-    }
-    constexpr std::string_view kMarlin = "marlin:";
-    if (starts_with(uri, kMarlin)) {
-        return attached(uri, open_transport(uri.substr(kMarlin.size())), marlin_session);
-    }
-    constexpr std::string_view kSmoothie = "smoothie:";
-    if (starts_with(uri, kSmoothie)) {
-        return attached(uri, open_transport(uri.substr(kSmoothie.size())), smoothie_session);
+    for (const Family& family : kFamilies) {
+        if (starts_with(uri, family.linked)) {
+            const SessionAddress address = family.address(uri.substr(family.linked.size()));
+            return attached(uri, open_transport(address.transport), address.make_session);
+        }
+        if (const auto query = query_of(uri, family.simulated)) {
+            const SessionAddress address = family.address(fmt::format("?{}", *query));
+            return attached(uri, family.open_simulated(without_question(address.transport)),
+                            address.make_session);
+        }
     }
     if (starts_with(uri, "lihuiyu:") || uri == "sim:lihuiyu" || starts_with(uri, "sim:lihuiyu?")) {
         return open_lihuiyu(uri);

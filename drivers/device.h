@@ -133,8 +133,11 @@ public:
 // Opens the device of a URI: grbl:/dev/ttyUSB0?baud=115200, grbl:tcp://host:port, marlin: and
 // smoothie: alike, lihuiyu:usb?bus=1&address=4 (lihuiyu/address.h), sim:grbl, sim:marlin,
 // sim:smoothie, sim:lihuiyu. The sim: ones start a simulated machine of their own; `?burn=FILE`
-// keeps its beam log. With "power_cap=PERCENT" a Grbl device refuses programs of a higher S than
-// that part of $30. Throws LinkLost, or std::invalid_argument for a URI it can't read.
+// keeps its beam log. With "power_cap=PERCENT" a device refuses programs of a higher S than that
+// part of full power ($30 of a Grbl; "s_max=S" of the others, else 255 of Marlin, 1 of
+// Smoothieware). "poll_ms=100" to 1000: a Grbl is asked for its status more or less often than 5
+// times a second. "width=MM&height=MM": the bed of a Marlin or Smoothieware, which programs must
+// not leave. Throws LinkLost, or std::invalid_argument for a URI it can't read.
 std::unique_ptr<Device> open_device(std::string_view uri);
 
 // Whether a URI begins like one that open_device() takes; opens nothing.

@@ -16,7 +16,7 @@ namespace {
 using Kind = JournalRecord::Kind;
 
 constexpr std::string_view kFormat = "leafcutter-journal/1";
-constexpr double kSlowestReports = 0.2;  // Seconds.
+constexpr double kSlowestReports = 1.0;  // Seconds.
 constexpr double kReportDelay = 0.01;
 constexpr double kSamePlace = 0.1;  // mm
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -24,6 +26,7 @@ constexpr std::array<int, 26> kAllowedG{0,   10,  20,  30,  40,  100, 170, 210, 
                                         570, 580, 590, 610, 800, 900, 910, 911};
 constexpr std::array<int, 3> kMoreAllowedG{920, 921, 940};
 constexpr std::array<int, 9> kAllowedM{0, 1, 2, 3, 4, 5, 8, 9, 30};
+constexpr int kWaitForStand = 400;  // Marlin's and Smoothieware's.
 
 struct Bounds {
     Point low{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
@@ -54,7 +57,12 @@ public:
         bool has_axes = false;
         bool other_axes_user = false;
         radius_.reset();
-        for (const GcodeWord& word : split_words(line.text).words) {
+        const std::vector<GcodeWord> words = split_words(line.text).words;
+        has_inline_word_ = holds_word(words, 'I');
+        dwells_ = std::any_of(words.begin(), words.end(), [](const GcodeWord& word) {
+            return word.letter == 'G' && word.value == 4.0;
+        });
+        for (const GcodeWord& word : words) {
             if (word.letter == 'G') {
                 other_axes_user = general(word.value) || other_axes_user;
             } else if (word.letter == 'M') {
@@ -77,9 +85,14 @@ private:
         throw ProgramRefused(fmt::format("line {} ({}): {}", line_->number, line_->text, what));
     }
 
+    static bool holds_word(const std::vector<GcodeWord>& words, char letter) {
+        return std::any_of(words.begin(), words.end(),
+                           [letter](const GcodeWord& word) { return word.letter == letter; });
+    }
+
     // Returns whether the axis words of the line belong to this command.
     bool general(double code) {
-        const int tenths = static_cast<int>(std::lround(code * 10.0));
+        const int tenths = whole_part(std::round(code * 10.0));
         if (tenths == 200) {
             refuse("inches (G20); write the program in mm (G21)");
         }
@@ -99,17 +112,25 @@ private:
     }
 
     void machine_code(double code) {
-        const int number = static_cast<int>(code);
-        if (number != code || !holds(kAllowedM, number)) {
+        const int number = whole_part(code);
+        const bool waits = number == kWaitForStand && machine_.beam != BeamCommand::M4;
+        if (number != code || !(holds(kAllowedM, number) || waits)) {
             refuse(fmt::format("M{} is not allowed on a laser", code));
         }
-        if (number == 3) {
+        const bool dark_when_standing = machine_.beam != BeamCommand::InlineM4 || has_inline_word_;
+        if (number == 3 && machine_.beam != BeamCommand::None) {
             refuse(
-                "M3 keeps the beam lit where the machine stands, should this computer fail; "
-                "write M4");
+                fmt::format("M3 keeps the beam lit where the machine stands, should this "
+                            "computer fail; write {}",
+                            machine_.beam == BeamCommand::M4 ? "M4" : "M4 I"));
+        }
+        if (number == 4 && !dark_when_standing) {
+            refuse(
+                "without I the beam burns while the head stands; write M4 I "
+                "(output.dialect=marlin)");
         }
         if (number == 4) {
-            beam_ = true;
+            beam_ = machine_.beam != BeamCommand::None;
         } else if (number == 5 || number == 2 || number == 30) {
             beam_ = false;
         }
@@ -138,15 +159,7 @@ private:
                 feed_set_ = feed_set_ || word.value > 0.0;
                 return false;
             case 'S':
-                if (machine_.s_max && word.value > *machine_.s_max) {
-                    refuse(fmt::format("S{} is above the machine's full power $30={}", word.value,
-                                       *machine_.s_max));
-                }
-                if (machine_.s_max &&
-                    word.value > *machine_.s_max * machine_.power_cap_percent / 100.0) {
-                    refuse(fmt::format("S{} is above {} % of $30={}, the device's power_cap",
-                                       word.value, machine_.power_cap_percent, *machine_.s_max));
-                }
+                power(word.value);
                 return false;
             case 'K':
             case 'L':
@@ -156,6 +169,21 @@ private:
                 return false;
             default:
                 refuse(fmt::format("the word {} is not allowed on a laser", word.letter));
+        }
+    }
+
+    void power(double s) const {
+        if (dwells_ || !machine_.s_max) {
+            return;
+        }
+        const std::string_view name = machine_.beam == BeamCommand::M4 ? "$30" : "s_max";
+        if (s > *machine_.s_max) {
+            refuse(fmt::format("S{} is above the machine's full power {}={}", s, name,
+                               *machine_.s_max));
+        }
+        if (s > *machine_.s_max * machine_.power_cap_percent / 100.0) {
+            refuse(fmt::format("S{} is above {} % of {}={}, the device's power_cap", s,
+                               machine_.power_cap_percent, name, *machine_.s_max));
         }
     }
 
@@ -200,6 +228,8 @@ private:
     Point centre_{};
     std::array<bool, 2> axis_given_{};
     std::optional<double> radius_;
+    bool has_inline_word_ = false;
+    bool dwells_ = false;
     int motion_ = 0;
     bool relative_ = false;
     bool beam_ = false;
@@ -242,7 +272,7 @@ void preflight(const Program& program, const MachineFacts& machine) {
     if (machine.reports_inches) {
         throw Refused("the machine reports inches; send $13=0 to it first");
     }
-    if (!machine.laser_mode) {
+    if (machine.beam == BeamCommand::M4 && !machine.laser_mode) {
         throw Refused(
             "laser mode is off, the beam would stay lit while the machine stands; send $32=1 "
             "first");

@@ -30,12 +30,20 @@ struct Program {
 // buffer, words that can't be read, `$` commands, bytes that Grbl takes for real-time commands.
 Program read_program(std::string_view text, std::size_t longest_line = GrblProtocol::kMaxLine);
 
+// What lights a machine's beam so that it goes out by itself wherever the head stands.
+enum class BeamCommand {
+    M4,        // Grbl in laser mode.
+    InlineM4,  // Marlin: M4 I.
+    None       // Smoothieware: its beam goes with G1, G2 and G3.
+};
+
 // What a program is held against. Lengths in mm.
 struct MachineFacts {
-    bool laser_mode = false;            // $32
+    BeamCommand beam = BeamCommand::M4;
+    bool laser_mode = false;            // $32; of Grbl alone.
     bool reports_inches = false;        // $13
     std::optional<double> s_max;        // $30
-    double power_cap_percent = 100.0;   // Of $30; a higher S is refused.
+    double power_cap_percent = 100.0;   // Of s_max; a higher S is refused.
     std::array<double, 2> travel_mm{};  // $130, $131; 0: unknown.
     // Where the work origin lies in the travel, 0 at its low end; unknown without homing.
     std::optional<std::array<double, 2>> origin_in_travel_mm;
@@ -43,7 +51,8 @@ struct MachineFacts {
 };
 
 // Throws ProgramRefused with the line, or Refused for the machine's settings, and what to do.
-// M4 only: with M3 the beam stays lit where the machine stands once its sender dies.
+// No M3: with it the beam stays lit where the machine stands once its sender dies (of Marlin 2.1,
+// too, only M4 I goes out when the planner is empty: stepper.cpp).
 void preflight(const Program& program, const MachineFacts& machine);
 
 }  // namespace leafcutter::drivers

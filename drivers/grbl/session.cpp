@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "drivers/gcode_words.h"
+
 namespace leafcutter::drivers {
 
 namespace {
@@ -14,7 +16,6 @@ using std::chrono::milliseconds;
 
 constexpr char kReset = 0x18;
 constexpr char kJogCancel = static_cast<char>(0x85);
-constexpr milliseconds kPollInterval{200};
 constexpr milliseconds kFastPollInterval{100};
 
 constexpr bool moves(MachineState state) {
@@ -23,12 +24,8 @@ constexpr bool moves(MachineState state) {
 
 }  // namespace
 
-GrblSession::GrblSession(Time now, double power_cap_percent)
-    : now_(now),
-      phase_since_(now),
-      halt_since_(now),
-      heard_(now),
-      power_cap_percent_(power_cap_percent) {
+GrblSession::GrblSession(Time now, const GrblOptions& options)
+    : now_(now), phase_since_(now), halt_since_(now), heard_(now), options_(options) {
     progress_.outcome = JobOutcome::Done;
     status_.state = MachineState::Unknown;
 }
@@ -321,10 +318,9 @@ void GrblSession::fill() {
 }
 
 milliseconds GrblSession::poll_interval() const {
-    // Of a job: where a power cut stops the beam is known to what it burns between two reports.
-    const bool hurry = job_runs() || halt_ != Halt::None || finishing_ || resume_wanted_ ||
-                       standing_since_ || beam_stands_since_;
-    return hurry ? kFastPollInterval : kPollInterval;
+    const bool hurry = halt_ != Halt::None || finishing_ || resume_wanted_ || standing_since_ ||
+                       beam_stands_since_;
+    return hurry ? std::min(kFastPollInterval, options_.poll_interval) : options_.poll_interval;
 }
 
 void GrblSession::poll() {
@@ -394,7 +390,7 @@ MachineFacts GrblSession::facts() const {
     if (settings_.count(30) != 0) {
         facts.s_max = settings_value(30, 0.0);
     }
-    facts.power_cap_percent = power_cap_percent_;
+    facts.power_cap_percent = options_.power_cap_percent;
     facts.travel_mm = {settings_value(130, 0.0), settings_value(131, 0.0)};
     facts.work_position_mm = {status_.work_position_mm[0], status_.work_position_mm[1]};
     // Soft limits need homing, so only with them is the place of the work origin known. The travel
@@ -402,7 +398,7 @@ MachineFacts GrblSession::facts() const {
     // that is the low one ($23).
     if (settings_value(20, 0.0) != 0.0 && work_offset_) {
         std::array<double, 2> origin{};
-        const int homes_low = static_cast<int>(settings_value(23, 0.0));
+        const int homes_low = whole_part(settings_value(23, 0.0));
         const bool forced = firmware_.build_options().find('Z') != std::string::npos;
         for (std::size_t axis = 0; axis < 2; ++axis) {
             const bool positive = forced && (homes_low & (1 << axis)) != 0;

@@ -1,8 +1,8 @@
 // A Grbl controller as its sender sees it: pure, bytes and time in, bytes out. Opens nothing.
 //
 // Attaches (banner, $I, $$), streams a program by character counting, polls '?' at 5 Hz whatever
-// the stream does, and ends every job it can't finish with the beam off: feed hold, wait for
-// Hold:0, reset.
+// the stream does (twice as often for the moments of a halt or a resume), and ends every job it
+// can't finish with the beam off: feed hold, wait for Hold:0, reset.
 
 #pragma once
 
@@ -25,10 +25,16 @@
 
 namespace leafcutter::drivers {
 
+struct GrblOptions {
+    double power_cap_percent = 100.0;  // Programs of a higher S than this part of $30 are refused.
+    // Between two status queries. After a power cut, where the beam stopped is known to half of
+    // what it burns in that time.
+    std::chrono::milliseconds poll_interval{200};
+};
+
 class GrblSession final : public Session {
 public:
-    // Programs of a higher S than this part of $30 are refused.
-    explicit GrblSession(Time now, double power_cap_percent = 100.0);
+    explicit GrblSession(Time now, const GrblOptions& options = {});
 
     void receive(std::string_view bytes, Time now) override;
     void tick(Time now) override;
@@ -161,7 +167,7 @@ private:
 
     DeviceStatus status_;
     JobProgress progress_;
-    double power_cap_percent_;
+    GrblOptions options_;
     std::optional<std::array<int, 3>> wanted_overrides_;
     Time overrides_stepped_;
     std::optional<int> sub_state_;

@@ -90,6 +90,7 @@ MarlinEvent::Kind kind_of(std::string_view line) {
     }
     return kind_of_notice(line);
 }
+
 std::optional<double> value_of(std::string_view text, std::string_view name) {
     const std::size_t at = text.find(name);
     if (at == std::string_view::npos) {
@@ -148,6 +149,15 @@ std::optional<MarlinPosition> parse_position(std::string_view text) {
         return std::nullopt;
     }
     return MarlinPosition{*x, *y, value_of(planned, "Z:").value_or(0.0)};
+}
+
+std::optional<std::array<double, 2>> parse_corner(std::string_view text) {
+    const std::optional<double> x = value_of(text, "x:");
+    const std::optional<double> y = value_of(text, "y:");
+    if (!x || !y) {
+        return std::nullopt;
+    }
+    return std::array<double, 2>{*x, *y};
 }
 
 }  // namespace leafcutter::drivers

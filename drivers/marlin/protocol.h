@@ -8,6 +8,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -63,5 +64,8 @@ struct MarlinPosition {
     double z_mm = 0.0;
 };
 std::optional<MarlinPosition> parse_position(std::string_view text);
+
+// X and Y of "x:0.0000,y:-2.0000,…".
+std::optional<std::array<double, 2>> parse_corner(std::string_view text);
 
 }  // namespace leafcutter::drivers

@@ -19,21 +19,15 @@ bool is_shell_line(std::string_view line) {
     return line[0] == '$' || (line[0] >= 'a' && line[0] <= 'z');
 }
 
-// Lights the beam whether or not the head moves: M3 or M4 without I on Marlin.
-bool lights_standing_beam(std::string_view line) {
-    bool beam = false;
-    bool inline_power = false;
-    for (const GcodeWord& word : split_words(line).words) {
-        beam = beam || (word.letter == 'M' && (word.value == 3.0 || word.value == 4.0));
-        inline_power = inline_power || word.letter == 'I';
-    }
-    return beam && !inline_power;
-}
-
 }  // namespace
 
-MarlinSession::MarlinSession(Firmware firmware, Time now)
-    : firmware_(firmware), now_(now), phase_since_(now), heard_(now), answered_(now) {
+MarlinSession::MarlinSession(Firmware firmware, Time now, const MarlinOptions& options)
+    : firmware_(firmware),
+      options_(options),
+      now_(now),
+      phase_since_(now),
+      heard_(now),
+      answered_(now) {
     progress_.outcome = JobOutcome::Done;
     status_.state = MachineState::Unknown;
 }
@@ -110,14 +104,7 @@ void MarlinSession::start(std::string_view text) {
                                   to_string(status_.state)));
     }
     const Program program = read_program(text);
-    for (const ProgramLine& line : program.lines) {
-        if (!smoothie() && lights_standing_beam(line.text)) {
-            throw ProgramRefused(
-                fmt::format("line {} ({}): without I the beam burns while the head stands; make "
-                            "the program for Marlin (output.dialect=marlin)",
-                            line.number, line.text));
-        }
-    }
+    preflight(program, facts());
     progress_ = {JobOutcome::Running, program.lines.size(), 0, 0, {}};
     status_.message.clear();
     status_.state = MachineState::Run;
@@ -131,6 +118,21 @@ void MarlinSession::start(std::string_view text) {
     // Answered once every move has ended.
     job_.push_back({Origin::Frame, "M400", 0, 0});
     fill();
+}
+
+MachineFacts MarlinSession::facts() const {
+    constexpr double kMarlinFull = 255.0;
+    MachineFacts facts;
+    facts.beam = smoothie() ? BeamCommand::None : BeamCommand::InlineM4;
+    facts.s_max = options_.s_max.value_or(smoothie() ? 1.0 : kMarlinFull);
+    facts.power_cap_percent = options_.power_cap_percent;
+    const Area area = area_.value_or(Area{{}, options_.bed_mm});
+    facts.travel_mm = area.size_mm;
+    facts.work_position_mm = {status_.work_position_mm[0], status_.work_position_mm[1]};
+    if (!origin_moved_) {
+        facts.origin_in_travel_mm = {-area.least_mm[0], -area.least_mm[1]};
+    }
+    return facts;
 }
 
 void MarlinSession::hold() {
@@ -188,7 +190,7 @@ void MarlinSession::stop() {
 
 void MarlinSession::home() {
     require_ready("home");
-    command_state(MachineState::Home);
+    status_.state = MachineState::Home;
     const bool park = smoothie() && grbl_mode_;  // There a plain G28 only parks.
     submit(smoothie() ? (park ? "G28.2 X0 Y0" : "G28 X0 Y0") : "G28 X Y");
     submit("M400");
@@ -213,7 +215,7 @@ void MarlinSession::jog(const Jog& jog) {
     if (!(jog.feed_mm_per_min > 0.0)) {
         throw Refused("jog: the feed must be above 0");
     }
-    command_state(MachineState::Jog);
+    status_.state = MachineState::Jog;
     submit("M5");
     submit("G91");
     submit(fmt::format("G0 X{:.3f} Y{:.3f} F{:.1f}", jog.dx_mm, jog.dy_mm, jog.feed_mm_per_min));
@@ -254,6 +256,14 @@ void MarlinSession::console(std::string_view line) {
     } catch (const std::invalid_argument& wrong) {
         throw Refused(fmt::format("console: {}", wrong.what()));
     }
+    constexpr std::string_view kMoveOrigin[] = {"G92", "M206", "M428", "G54", "G55",
+                                                "G56", "G57",  "G58",  "G59", "G10"};
+    const std::string stripped = strip_gcode(line);
+    origin_moved_ =
+        origin_moved_ ||
+        std::any_of(std::begin(kMoveOrigin), std::end(kMoveOrigin), [&](std::string_view word) {
+            return stripped.find(word) != std::string::npos;
+        });
     submit(std::string(line));
 }
 
@@ -281,10 +291,6 @@ void MarlinSession::submit(std::string line) {
     fill();
 }
 
-void MarlinSession::command_state(MachineState state) {
-    status_.state = state;
-}
-
 // ---- Ending ----
 
 void MarlinSession::end_job(JobOutcome outcome, std::string reason) {
@@ -307,7 +313,7 @@ void MarlinSession::forget_lines() {
     again_.clear();
     commands_.clear();
     quick_stop_due_ = idle_told_ = false;
-    positions_owed_ = positions_heard_ = 0;
+    positions_owed_ = positions_heard_ = counted_to_ = 0;
 }
 
 }  // namespace leafcutter::drivers

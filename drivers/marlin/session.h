@@ -10,13 +10,16 @@
 // then the beam is put out. Marlin's M410 empties the planner at once, but a line that waits for
 // room there would then burn from a wrong place: a cancel sends it when no line waits. An emergency
 // stop (M112) reaches a Marlin that was built without its emergency parser only behind what it has
-// read. Smoothieware has Ctrl-X, which stops the motors dead: home it then.
+// read. Smoothieware has Ctrl-X, which stops the motors dead: home it then. Silence is noticed
+// within 2 s, but not that of a Marlin built without HOST_KEEPALIVE_FEATURE: while a long move is
+// under way it hears nothing and says nothing, whatever it is asked; it gets 20 s.
 
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,12 +30,19 @@
 
 namespace leafcutter::drivers {
 
+struct MarlinOptions {
+    std::optional<double> s_max;       // S of full power; none: 255, of Smoothieware 1.
+    double power_cap_percent = 100.0;  // Of s_max; programs of a higher S are refused.
+    // From the home corner, where the controller doesn't say it (Marlin's M115 does); 0: unknown.
+    std::array<double, 2> bed_mm{};
+};
+
 class MarlinSession final : public Session {
 public:
     enum class Firmware { Marlin, Smoothie };
 
     // What the controller says about itself goes before `firmware`.
-    MarlinSession(Firmware firmware, Time now);
+    MarlinSession(Firmware firmware, Time now, const MarlinOptions& options = {});
 
     void receive(std::string_view bytes, Time now) override;
     void tick(Time now) override;
@@ -82,7 +92,7 @@ private:
     void require_ready(std::string_view what) const;
     void submit(std::string line);
     void console_shell(std::string_view line);
-    void command_state(MachineState state);
+    MachineFacts facts() const;
 
     // Sending.
     void fill();
@@ -108,6 +118,7 @@ private:
     void handle_unknown(const std::string& text);
     void hear_nudge(std::string_view text);
     void take_firmware(const std::string& text);
+    void take_area(std::string_view text);
     void take_status(const std::string& text);
     void take_position(const std::string& text);
     std::size_t answered_by(const std::string& ok);
@@ -121,7 +132,16 @@ private:
     void end_job(JobOutcome outcome, std::string reason);
     void forget_lines();
 
+    // Where the head can go, in the coordinates of a program.
+    struct Area {
+        std::array<double, 2> least_mm{};
+        std::array<double, 2> size_mm{};
+    };
+
     Firmware firmware_;
+    MarlinOptions options_;
+    std::optional<Area> area_;
+    bool origin_moved_ = false;  // By hand.
     Time now_;
     Phase phase_ = Phase::Greeting;
     Time phase_since_;
@@ -156,6 +176,7 @@ private:
     std::size_t resends_ = 0;
     std::size_t asked_again_ = 0;  // In a row, for the same line.
     std::size_t last_asked_ = 0;
+    std::size_t counted_to_ = 0;  // Lines up to that number are counted as acknowledged.
 
     MarlinProtocol protocol_;
     std::string output_;

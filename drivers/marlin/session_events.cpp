@@ -19,8 +19,9 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kBannerWait{3000};  // A board's boot loader.
 constexpr milliseconds kAnswerWait{2000};
-constexpr milliseconds kSilence{20000};          // Of one that doesn't say busy.
-constexpr milliseconds kSilenceWhenAlive{5000};  // Of one that does.
+// Of one that doesn't say busy: it may be at a long move, and answers nothing before its end.
+constexpr milliseconds kSilence{20000};
+constexpr milliseconds kSilenceWhenAlive{1900};  // Of one that does, every second.
 constexpr milliseconds kReportSilence{2000};     // Of one that answers '?' whatever it does.
 constexpr milliseconds kQuiet{100};  // Some versions answer "ok" after "Resend", some don't.
 constexpr std::size_t kMostResends = 12;
@@ -73,6 +74,7 @@ void MarlinSession::handle(const MarlinEvent& event) {
             foreign_ = foreign_ || !smoothie();
             break;
         case Kind::Other:
+            take_area(event.text);
             hear_nudge(event.text);
             break;
     }
@@ -94,6 +96,21 @@ void MarlinSession::take_firmware(const std::string& text) {
     if (text.find("Smoothie") != std::string::npos) {
         firmware_ = Firmware::Smoothie;
         grbl_mode_ = text.find("X-GRBL_MODE:1") != std::string::npos;
+    }
+}
+
+// Of the answer to M115: "area:{full:{min:{x:0.0000,y:0.0000,…},max:{x:235.0000,…}},work:{…}}".
+void MarlinSession::take_area(std::string_view text) {
+    constexpr std::string_view kStart = "area:{full:{min:{";
+    constexpr std::string_view kHighest = "},max:{";
+    const std::size_t most = text.find(kHighest);
+    if (text.substr(0, kStart.size()) != kStart || most == std::string_view::npos) {
+        return;
+    }
+    const auto least = parse_corner(text.substr(kStart.size(), most - kStart.size()));
+    const auto highest = parse_corner(text.substr(most + kHighest.size()));
+    if (least && highest) {
+        area_ = {*least, {(*highest)[0] - (*least)[0], (*highest)[1] - (*least)[1]}};
     }
 }
 
@@ -213,7 +230,10 @@ std::size_t MarlinSession::answered_by(const std::string& ok) {
 }
 
 void MarlinSession::answered(const Pending& line) {
-    progress_.lines_acknowledged += line.origin == Origin::Job ? 1 : 0;
+    if (line.origin == Origin::Job && line.number > counted_to_) {  // Else it was asked for again.
+        counted_to_ = line.number;
+        ++progress_.lines_acknowledged;
+    }
     const bool unknown = std::exchange(unknown_heard_, false);
     if (line.text.compare(0, 4, "M113") == 0) {
         keeps_alive_ = !unknown;
@@ -316,7 +336,8 @@ void MarlinSession::begin_asking() {
     phase_since_ = now_;
     positioned_ = named_ = keeps_alive_ = false;
     window_ = 1;
-    emergency_parser_ = false;
+    emergency_parser_ = origin_moved_ = false;
+    area_.reset();
     output_ += "M115\n";
 }
 

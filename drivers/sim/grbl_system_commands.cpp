@@ -134,7 +134,7 @@ int GrblMachine::startup_line(const std::string& line) {
         return result.error;
     }
     actions_.insert(actions_.end(), result.actions.begin(), result.actions.end());
-    if (*number < static_cast<double>(startup_lines_.size())) {
+    if (*number >= 0.0 && *number < static_cast<double>(startup_lines_.size())) {
         startup_lines_.at(static_cast<std::size_t>(*number)) = text;
     }
     write_eeprom();

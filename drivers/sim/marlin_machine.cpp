@@ -161,6 +161,13 @@ bool MarlinMachine::run_own(const std::string& line, const std::string& stripped
         out_ +=
             fmt::format("FIRMWARE_NAME:Marlin 2.1.2 SOURCE_CODE_URL:x\nCap:EMERGENCY_PARSER:{}\n",
                         options_.emergency_parser ? 1 : 0);
+        if (options_.bed_mm[0] > 0.0) {
+            out_ += fmt::format(
+                "area:{{full:{{min:{{x:0.0000,y:0.0000,z:0.0000}},max:{{x:{0:.4f},y:{1:.4f},"
+                "z:0.0000}}}},work:{{min:{{x:0.0000,y:0.0000,z:0.0000}},max:{{x:{0:.4f},"
+                "y:{1:.4f},z:0.0000}}}}}}\n",
+                options_.bed_mm[0], options_.bed_mm[1]);
+        }
     } else if (starts_with(stripped, "M114")) {
         const Axes& planned = runner_.planned_mm();
         const Axes& at = runner_.position_mm();

@@ -8,6 +8,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <deque>
 #include <string>
@@ -26,6 +27,7 @@ struct MarlinMachineOptions {
     bool knows_m118 = true;       // Repeats a text.
     bool knows_lasers = true;     // Else M3, M4 and M5 are unknown commands.
     double temperature_every_s = 0.0;
+    std::array<double, 2> bed_mm{};  // As M115 says it; 0: it doesn't.
 };
 
 class MarlinMachine final : public SimMachine {

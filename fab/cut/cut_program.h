@@ -15,7 +15,7 @@ namespace leafcutter::fab {
 struct MachineProfile {
     double rapid_mm_per_min = 6000.0;
     double acceleration_mm_per_s2 = 500.0;
-    double s_max = 1000.0;  // The S word of full power ($30).
+    std::optional<double> s_max;  // The S word of full power; none: what its firmware begins with.
 };
 
 // A stretch of a path that the beam leaves dark, in mm along its points.

@@ -14,6 +14,9 @@ namespace leafcutter::fab {
 // motion.
 std::string write_gcode(const CutProgram& program, const MachineProfile& machine, Dialect dialect);
 
+// The S word of full power: of the machine, or that with which such a firmware comes.
+double full_power(const MachineProfile& machine, Dialect dialect);
+
 // True size in mm, one group per operation (engrave, score, cut), lead-ins in one of their own.
 std::string write_svg(const CutProgram& program);
 

@@ -1,9 +1,10 @@
 // G-code of three dialects. All of it holds for each: millimetres, absolute, the S word on the
 // motion line, S0 on every rapid, so that a rapid is dark even where laser mode was forgotten.
 //
-// GRBL 1.1: M4 is dynamic power (laser mode, $32=1).
-// Marlin 2.0.9 and later: "M4 I" turns on inline power, without which S on G1 is not heeded.
-// Smoothieware: its laser module needs no M word; power goes with G1 alone.
+// GRBL 1.1: M4 is dynamic power (laser mode, $32=1). S1000 is full ($30).
+// Marlin 2.0.9 and later: "M4 I" turns on inline power, without which S on G1 is not heeded. S255
+// is full (CUTTER_POWER_UNIT PWM255). Smoothieware: its laser module needs no M word; power goes
+// with G1 alone. S1 is full (laser_module_maximum_s_value).
 
 #include <cmath>
 #include <iterator>
@@ -89,8 +90,8 @@ std::string header(const CutProgram& program) {
 // none.
 class MotionWriter {
 public:
-    MotionWriter(const CutProgram& program, const MachineProfile& machine, std::string& out)
-        : program_(program), machine_(machine), out_(out) {}
+    MotionWriter(const CutProgram& program, double full_power_s, std::string& out)
+        : program_(program), full_power_s_(full_power_s), out_(out) {}
 
     void write(const Motion& motion) {
         std::string place =
@@ -110,7 +111,7 @@ public:
 private:
     void write_burn(const Motion& motion, const std::string& place) {
         const LaserSettings& settings = settings_of(program_, motion.operation);
-        const double power = settings.power_percent / 100.0 * machine_.s_max;
+        const double power = settings.power_percent / 100.0 * full_power_s_;
         fmt::format_to(std::back_inserter(out_), "G1 {}", place);
         if (power_ != power) {
             fmt::format_to(std::back_inserter(out_), " S{}", short_number(power));
@@ -124,7 +125,7 @@ private:
     }
 
     const CutProgram& program_;
-    const MachineProfile& machine_;
+    const double full_power_s_;
     std::string& out_;
     std::string place_ = "X0 Y0";
     std::optional<double> power_;
@@ -133,12 +134,17 @@ private:
 
 }  // namespace
 
+double full_power(const MachineProfile& machine, Dialect dialect) {
+    constexpr double kFull[] = {1000.0, 255.0, 1.0};  // In the order of the dialects.
+    return machine.s_max.value_or(kFull[static_cast<std::size_t>(dialect)]);
+}
+
 std::string write_gcode(const CutProgram& program, const MachineProfile& machine, Dialect dialect) {
     check_settings(program);
     std::string out = header(program);
     out += "G21\nG90\nG0 X0 Y0 S0\n";
     out += laser_on(dialect);
-    MotionWriter writer(program, machine, out);
+    MotionWriter writer(program, full_power(machine, dialect), out);
     for (const Motion& motion : motions(program, machine)) {
         writer.write(motion);
     }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "fab/export/formats.h"
 #include "geometry/error.h"
 
 namespace leafcutter::fab {
@@ -117,10 +118,10 @@ nlohmann::ordered_json bill_record(const Bill& bill) {
     return lines;
 }
 
-nlohmann::ordered_json machine_record(const MachineProfile& machine) {
+nlohmann::ordered_json machine_record(const MachineProfile& machine, Dialect dialect) {
     return {{"rapid_mm_per_min", machine.rapid_mm_per_min},
             {"acceleration_mm_per_s2", machine.acceleration_mm_per_s2},
-            {"s_max", machine.s_max}};
+            {"s_max", full_power(machine, dialect)}};
 }
 
 nlohmann::ordered_json input_record(const InputFacts& input) {
@@ -207,7 +208,7 @@ void add_makings(const JobResult& job, nlohmann::ordered_json& file) {
     if (job.warp.id != job.weft.id) {
         file["materials"].push_back(material_record(job.warp));
     }
-    file["machine"] = machine_record(job.machine);
+    file["machine"] = machine_record(job.machine, job.params.output.dialect);
     if (!job.params_json.empty()) {
         file["params"] = json::parse(job.params_json);
     }

@@ -18,7 +18,7 @@ nlohmann::ordered_json stock_record(const StockItem& item);
 
 nlohmann::ordered_json bill_record(const Bill& bill);
 
-nlohmann::ordered_json machine_record(const MachineProfile& machine);
+nlohmann::ordered_json machine_record(const MachineProfile& machine, Dialect dialect);
 
 nlohmann::ordered_json input_record(const InputFacts& input);
 nlohmann::ordered_json nesting_record(const Layout& layout);

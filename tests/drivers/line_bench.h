@@ -16,6 +16,7 @@
 
 #include "drivers/marlin/session.h"
 #include "drivers/sim/faulty_wire.h"
+#include "drivers/transport.h"
 
 namespace leafcutter::drivers {
 
@@ -131,6 +132,19 @@ inline void expect_on_zigzag(const std::vector<BurntPiece>& burnt) {
         EXPECT_LT(off_line(piece.x1_mm, piece.y1_mm), 1.0) << piece.x1_mm << " " << piece.y1_mm;
         EXPECT_LT(std::abs(piece.y1_mm - piece.y0_mm), 1.01);
     }
+}
+
+// Runs until the session gives the link up. Returns for how long the machine had said nothing then.
+inline double silence_until_noticed(LineBench& bench) {
+    std::size_t before = 0;
+    double silent_since = 0.0;
+    const auto note = [&] {
+        silent_since = bench.said.size() > before ? bench.now_s() : silent_since;
+        before = bench.said.size();
+        return bench.session().progress().outcome != JobOutcome::Running;
+    };
+    EXPECT_THROW(bench.run_until(note), LinkLost);
+    return bench.now_s() - silent_since;
 }
 
 inline void expect_whole(LineBench& bench, int lines, const std::string& beam = "M4 I1 S0\n") {

@@ -42,15 +42,17 @@ inline std::string mixed_job(double feed) {
 // The program under way in a machine, followed as the daemon follows it.
 class ResumeBench {
 public:
-    explicit ResumeBench(std::string program, std::vector<Fault> faults = {})
+    explicit ResumeBench(std::string program,
+                         std::vector<Fault> faults = {},
+                         const GrblOptions& session = {})
         : program_(std::move(program)),
           path_(std::make_shared<BeamPath>(program_)),
           journal_(std::make_shared<KeptJournal>()),
-          bench_({}, std::move(faults)) {
+          bench_({}, std::move(faults), session) {
         EXPECT_TRUE(bench_.attach());
         begun_s_ = bench_.now_s();
         follower_ = std::make_unique<BeamFollower>(
-            path_, journal_, [this] { return bench_.now_s() - begun_s_; },
+            path_, journal_, [this] { return bench_.now_s() - begun_s_ + unnoticed_s_; },
             bench_.session().status().planner_blocks);
         bench_.watch = follower_.get();
         bench_.session().allow_lines(0);
@@ -81,6 +83,15 @@ public:
         const std::size_t reports = session().status().reports;
         bench_.run_until([&] { return session().status().reports >= reports + 2; }, 3.0);
         follower_->end(session().progress(), session().status());
+    }
+
+    // Its power goes, and the host notices by its silence.
+    void lose_power() {
+        JobProgress progress = session().progress();
+        progress.outcome = JobOutcome::LinkLost;
+        unnoticed_s_ = 2.0;
+        follower_->end(progress, {});
+        machine().power_cycle();
     }
 
     // The machine met again: what it says of its position.
@@ -129,6 +140,7 @@ private:
     std::shared_ptr<KeptJournal> journal_;
     SteppedMachine bench_;
     double begun_s_ = 0.0;
+    double unnoticed_s_ = 0.0;
     std::unique_ptr<BeamFollower> follower_;
 };
 

@@ -19,8 +19,10 @@ class SteppedMachine {
 public:
     using Time = GrblSession::Time;
 
-    explicit SteppedMachine(const GrblMachineOptions& options = {}, std::vector<Fault> faults = {})
-        : machine_(options, std::move(faults)), session_(now_) {}
+    explicit SteppedMachine(const GrblMachineOptions& options = {},
+                            std::vector<Fault> faults = {},
+                            const GrblOptions& session = {})
+        : machine_(options, std::move(faults)), session_(now_, session) {}
 
     GrblSession& session() { return session_; }
     GrblMachine& machine() { return machine_.machine(); }

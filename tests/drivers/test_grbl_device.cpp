@@ -185,7 +185,9 @@ TEST(GrblDevice, PassesOnEveryLineItHears) {
 TEST(OpenDevice, RefusesUrisItCannotRead) {
     for (const char* uri :
          {"", "grbl:", "usb:1", "sim:ruida", "grbl:tcp://host", "grbl:/dev/null?speed=1",
-          "grbl:/dev/x?baud=fast", "sim:grbl?colour=red", "sim:grbl?speed=-1", "sim:grblx"}) {
+          "grbl:/dev/x?baud=fast", "sim:grbl?poll_ms=20", "sim:grbl?power_cap=0",
+          "sim:grbl?power_cap=9x", "sim:marlin?s_max=0", "marlin:/dev/x?width=-1",
+          "sim:grbl?colour=red", "sim:grbl?speed=-1", "sim:grblx"}) {
         EXPECT_THROW(open_device(uri), std::invalid_argument) << uri;
     }
 }

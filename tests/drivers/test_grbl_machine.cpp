@@ -85,6 +85,16 @@ TEST(GrblMachine, ReportsErrorsByGrblsNumbers) {
               "ok\r\n");  // 79 characters.
 }
 
+// Numbers that no table has a place for.
+TEST(GrblMachine, TakesStartupLinesOfAnyNumber) {
+    Machine machine;
+    for (const char* line : {"$N-5=G21", "$N2=G21", "$N99999999999999999999=G21"}) {
+        machine.say(line);
+        machine.settle();
+        EXPECT_THAT(machine.say("$N"), AllOf(HasSubstr("$N0=\r\n"), HasSubstr("$N1=\r\n"))) << line;
+    }
+}
+
 TEST(GrblMachine, DropsWhatOverflowsItsReceiveBuffer) {
     Machine machine;
     machine.say("G1F60X1");

@@ -82,12 +82,33 @@ TEST(Preflight, NamesTheLineThatIsAtFault) {
     EXPECT_THAT(refusal("G0 A1\n"), HasSubstr("word A"));
 }
 
+TEST(Preflight, RefusesCodesBeyondAnInt) {
+    EXPECT_THAT(refusal("G25555555555555555555550 G91\n"), HasSubstr("not allowed"));
+    EXPECT_THAT(refusal("M5555555555555555555550\n"), HasSubstr("not allowed"));
+}
+
 TEST(Preflight, TakesM4AloneAndNoMoreThanTheCappedPower) {
     EXPECT_THAT(refusal("G21\nM3 S100\nG1 X1 F100\nM5\n"), HasSubstr("line 2 (M3S100): M3"));
     MachineFacts facts = laser();
     facts.power_cap_percent = 60.0;
     EXPECT_EQ(refusal("M4 S600\nG1 X1 F100\nM5\n", facts), "");
     EXPECT_THAT(refusal("M4 S601\nG1 X1 F100\nM5\n", facts), HasSubstr("power_cap"));
+}
+
+TEST(Preflight, KnowsHowEachFamilyLightsItsBeam) {
+    MachineFacts marlin = laser();
+    marlin.laser_mode = false;  // It has no such setting.
+    marlin.beam = BeamCommand::InlineM4;
+    EXPECT_EQ(refusal("M4 I1\nG1 X1 F100 S9\nM400\nM5\n", marlin), "");
+    EXPECT_THAT(refusal("M4\nG1 X1 F100 S9\nM5\n", marlin), HasSubstr("without I"));
+    EXPECT_THAT(refusal("M3 I1\nG1 X1 F100 S9\nM5\n", marlin), HasSubstr("write M4 I"));
+    MachineFacts smoothie = marlin;
+    smoothie.beam = BeamCommand::None;
+    smoothie.s_max = 1.0;
+    EXPECT_EQ(refusal("G1 X1 F100 S0.5\n", smoothie), "");
+    EXPECT_EQ(refusal("M3\nG4 S2\nG1 X1 F100 S1\n", smoothie), "");
+    EXPECT_THAT(refusal("G1 X1 F100 S1.1\n", smoothie), HasSubstr("s_max=1"));
+    EXPECT_THAT(refusal("M400\n"), HasSubstr("M400"));
 }
 
 TEST(Preflight, RefusesAProgramThatLeavesTheBeamOn) {

@@ -110,7 +110,7 @@ TEST(GrblSession, NeverOverflowsTheReceiveBufferWhateverTheDelays) {
     }
 }
 
-TEST(GrblSession, PollsTheStatusWhateverTheStreamDoes) {
+TEST(GrblSession, PollsTheStatusAtFiveHertzWhateverTheStreamDoes) {
     SteppedMachine bench;
     ASSERT_TRUE(bench.attach());
     bench.session().start(zigzag(50));
@@ -123,8 +123,8 @@ TEST(GrblSession, PollsTheStatusWhateverTheStreamDoes) {
             reports += line[0] == '<' ? 1 : 0;
         }
     }
-    EXPECT_GE(reports, 45);
-    EXPECT_LE(reports, 101);
+    EXPECT_GE(reports, 48);
+    EXPECT_LE(reports, 51);
 }
 
 TEST(GrblSession, FailsAtAnErrorAndNamesTheLine) {

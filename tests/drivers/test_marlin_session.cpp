@@ -103,13 +103,24 @@ TEST(MarlinSession, HealsEveryFaultOfTheWireWithinTwoSeconds) {
     }
 }
 
-TEST(MarlinSession, SaysThatTheControllerHasFallenSilent) {
-    Bench bench({}, WireFault{Kind::Stall, 20});
+TEST(MarlinSession, NoticesWithinTwoSecondsThatTheControllerIsSilent) {
+    for (std::size_t at = 12; at < 50; ++at) {
+        Bench bench({}, WireFault{Kind::Stall, at});
+        ASSERT_TRUE(bench.attach());
+        bench.session().start(zigzag(60));
+        EXPECT_LT(silence_until_noticed(bench), 2.0) << at;
+        EXPECT_EQ(bench.session().last_words(), "M112\n");
+    }
+}
+
+// One that was built to say nothing while a line takes long looks the same at a long move.
+TEST(MarlinSession, WaitsLongerForAControllerThatNeverSaysThatItIsBusy) {
+    MarlinMachineOptions options;
+    options.keeps_alive = false;
+    Bench bench(options, WireFault{Kind::Stall, 20});
     ASSERT_TRUE(bench.attach());
     bench.session().start(zigzag(60));
-    EXPECT_THROW(bench.finish_job(), LinkLost);
-    EXPECT_LT(bench.now_s(), 20.0);
-    EXPECT_EQ(bench.session().last_words(), "M112\n");
+    EXPECT_LT(silence_until_noticed(bench), 20.1);
 }
 
 TEST(MarlinSession, HoldsInTheDarkAndGoesOnAsIfNothingHadBeen) {
@@ -178,16 +189,89 @@ TEST(MarlinSession, StopsAtOnceAndMustBeReset) {
     EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done);
 }
 
-TEST(MarlinSession, RefusesABeamThatBurnsWhileTheHeadStands) {
-    Bench bench;
-    ASSERT_TRUE(bench.attach());
+// Why a program is refused; empty if it isn't.
+std::string refusal(LineBench& bench, const std::string& program) {
+    EXPECT_TRUE(bench.attach());
     try {
-        bench.session().start("G21\nM3 S500\nG1 X10 F600\n");
-        FAIL();
+        bench.session().start(program);
     } catch (const ProgramRefused& refused) {
-        EXPECT_THAT(refused.what(), HasSubstr("line 2"));
+        return refused.what();
     }
-    EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done);
+    EXPECT_TRUE(bench.finish_job());
+    return {};
+}
+
+// Of Marlin's laser modes only M4 I goes out when the planner runs empty.
+TEST(MarlinSession, RefusesABeamThatBurnsWhileTheHeadStands) {
+    for (const char* beam : {"M3 S100", "M3 I1 S100", "M3 I1", "M4 S100"}) {
+        Bench bench;
+        EXPECT_THAT(refusal(bench, fmt::format("G21\n{}\nG1 X10 F600\nM5\n", beam)),
+                    AllOf(HasSubstr("line 2"), HasSubstr("M4 I")))
+            << beam;
+        EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done);
+    }
+    Bench bench;
+    EXPECT_EQ(refusal(bench, "G21\nM4 I1 S0\nG1 X10 F600 S9\nM5\n"), "");
+    EXPECT_THAT(refusal(bench, "M4 I1 S9\nG1 X10 F600\n"), HasSubstr("must end with M5"));
+}
+
+TEST(MarlinSession, HoldsAProgramAgainstFullPowerAndTheBed) {
+    MarlinMachineOptions options;
+    options.bed_mm = {235.0, 220.0};
+    Bench bench(options);
+    EXPECT_THAT(refusal(bench, "M4 I1 S0\nG1 X9 F600 S256\nM5\n"), HasSubstr("s_max=255"));
+    EXPECT_THAT(refusal(bench, "G0 X236\n"), HasSubstr("235.0"));
+    EXPECT_THAT(refusal(bench, "G0 X5 Y-1\n"), HasSubstr("only from Y0.0 to Y220.0"));
+    EXPECT_THAT(refusal(bench, "G1 X5\n"), HasSubstr("feed"));
+    EXPECT_THAT(refusal(bench, "G20\nG0 X5\n"), HasSubstr("inches"));
+    EXPECT_THAT(refusal(bench, "M106 S255\n"), HasSubstr("M106"));
+    EXPECT_EQ(refusal(bench, "G0 X235 Y220\nG4 P1\nM400\n"), "");
+    EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done)
+        << bench.session().progress().reason;
+    bench.session().console("G92 X-10");
+    ASSERT_TRUE(
+        bench.run_until([&] { return bench.session().status().state == MachineState::Idle; }));
+    EXPECT_EQ(refusal(bench, "G0 X-5\n"), "");  // Nobody knows where X0 is now.
+    EXPECT_THAT(refusal(bench, "G0 X0\nG0 X236\n"), HasSubstr("236.0 mm long"));
+}
+
+TEST(MarlinSession, TakesTheBedAndFullPowerItIsGiven) {
+    MarlinOptions options;
+    options.s_max = 100.0;
+    options.power_cap_percent = 50.0;
+    options.bed_mm = {300.0, 200.0};
+    MarlinSession session(Firmware::Marlin, Session::Time{}, options);
+    const auto say = [&](const char* text) { session.receive(text, Session::Time{}); };
+    say("start\n");
+    say("FIRMWARE_NAME:Marlin 2.0.9 SOURCE_CODE_URL:x\nok\nok\nX:0 Y:0 Z:0\n");
+    ASSERT_TRUE(session.attached());
+    EXPECT_THROW(session.start("G0 X301\n"), ProgramRefused);
+    EXPECT_THROW(session.start("M4 I1\nG1 X1 F9 S51\nM5\n"), ProgramRefused);
+    EXPECT_NO_THROW(session.start("M4 I1\nG1 X1 F9 S50\nM5\n"));
+}
+
+// A controller may ask for lines again that it has answered (another ok came twice).
+TEST(MarlinSession, CountsALineOnceThatIsAskedForAgain) {
+    MarlinSession session(Firmware::Marlin, Session::Time{});
+    Session::Time now{};
+    const auto say = [&](const char* text) {
+        now += std::chrono::milliseconds(200);
+        session.receive(text, now);
+        session.tick(now);
+    };
+    say("start\n");
+    say("FIRMWARE_NAME:Marlin 2.0.9 SOURCE_CODE_URL:x\nok\nok\nX:0 Y:0 Z:0\n");
+    session.start("G0 X1\nG0 X2\nG0 X3\n");
+    const auto progress = [&] { return session.progress(); };
+    while (progress().lines_acknowledged < 2) {
+        say("ok\n");
+    }
+    for (int i = 0; i < 3; ++i) {
+        say("Resend: 4\n");
+        say("ok\n");
+        say("ok\n");
+        ASSERT_LE(progress().lines_acknowledged, progress().lines_sent);
+    }
 }
 
 TEST(MarlinSession, FailsTheJobOfAControllerThatKnowsNoLaser) {
@@ -199,6 +283,8 @@ TEST(MarlinSession, FailsTheJobOfAControllerThatKnowsNoLaser) {
     ASSERT_TRUE(bench.finish_job());
     EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Failed);
     EXPECT_THAT(bench.session().progress().reason, HasSubstr("line 5 (M4I1S0): echo:Unknown"));
+    EXPECT_TRUE(
+        bench.run_until([&] { return bench.session().status().state == MachineState::Idle; }));
 }
 
 TEST(MarlinSession, FailsTheJobOfAControllerThatRestarts) {

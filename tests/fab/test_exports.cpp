@@ -104,6 +104,15 @@ INSTANTIATE_TEST_SUITE_P(All,
                          GcodeDialects,
                          testing::Values(Dialect::Grbl, Dialect::Marlin, Dialect::Smoothie));
 
+TEST(Gcode, ScalesPowerToWhatTheFirmwareTakesForFull) {
+    const auto cut = [](Dialect dialect) {
+        return write_gcode(sample_program(), MachineProfile(), dialect);
+    };
+    EXPECT_NE(cut(Dialect::Grbl).find(" S400 F900\n"), std::string::npos);
+    EXPECT_NE(cut(Dialect::Marlin).find(" S102 F900\n"), std::string::npos);
+    EXPECT_NE(cut(Dialect::Smoothie).find(" S0.4 F900\n"), std::string::npos);
+}
+
 TEST(Gcode, ScalesPowerToTheMachine) {
     MachineProfile machine;
     machine.s_max = 255.0;
