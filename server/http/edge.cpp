@@ -257,6 +257,11 @@ private:
             return;
         }
         VettedHead& head = std::get<VettedHead>(vetted);
+        const std::size_t whole = end + static_cast<std::size_t>(head.request.body.bytes);
+        if (head.request.body.bytes <= options_.parked_body_bytes && task.bytes.size() < whole) {
+            wait_for_body(task, whole, head.expects_continue);
+            return;
+        }
         Connection connection(task.fd, task.bytes.substr(end),
                               {options_.patience, options_.least_bytes_per_s});
         connection.expect_body(head.request.body.bytes, head.expects_continue);
@@ -275,6 +280,15 @@ private:
         } else {
             parking_.drain(task.fd);
         }
+    }
+
+    void wait_for_body(Task& task, std::size_t whole, bool expects_continue) {
+        constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+        if (expects_continue) {
+            // Few enough bytes for any empty buffer; a client that has it full gets no answer.
+            ::send(task.fd, kContinue.data(), kContinue.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+        }
+        parking_.park_for_body(task.fd, std::move(task.bytes), whole);
     }
 
     void answer(Exchange& exchange, httplib::Response& out) {
@@ -298,7 +312,7 @@ private:
         request.body.read = [&connection = exchange.connection](std::span<char> room) {
             return connection.read_body(room);
         };
-        const bool is_bulk = request.body.bytes > options_.bulk_bytes;
+        const bool is_bulk = request.body.bytes > options_.parked_body_bytes;
         if (is_bulk && !bulk_places_.try_acquire()) {
             return problem_response({503, "busy", "too many large transfers at once"});
         }
@@ -316,7 +330,7 @@ private:
 
     // A large answer keeps its worker busy until the last byte: the place is freed with the file.
     Response take_bulk_place_for_file(Response response) {
-        if (!response.file || response.file->bytes <= options_.bulk_bytes) {
+        if (!response.file || response.file->bytes <= options_.bulk_file_bytes) {
             return response;
         }
         if (!bulk_places_.try_acquire()) {

@@ -33,9 +33,13 @@ struct EdgeOptions {
     ParkingLimits parking;
     std::int64_t most_body_bytes = 256LL << 20;
 
-    // Bodies and files above this take one of workers - 2 bulk places, so that two workers are
+    // Bodies up to this are waited for among the parked connections, so that a slow one holds no
+    // worker up.
+    std::int64_t parked_body_bytes = 16384;
+
+    // Larger bodies, and files above this, take one of workers - 2 bulk places: two workers are
     // always left for a stop or a hold.
-    std::int64_t bulk_bytes = 262144;
+    std::int64_t bulk_file_bytes = 262144;
 
     std::chrono::milliseconds patience{10000};  // For any single read or write.
     std::int64_t least_bytes_per_s = 16384;     // Of a body, after `patience`.

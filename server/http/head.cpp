@@ -155,6 +155,14 @@ std::optional<Refusal> judge_host(const Request& request, const HeadRules& rules
     if (colon != std::string::npos && name.find(']', colon) == std::string::npos) {
         name.resize(colon);
     }
+    const std::string port = lowered(*host).substr(name.size());
+    const bool plain_port =
+        port.empty() || (port.size() > 1 && std::all_of(port.begin() + 1, port.end(), [](char c) {
+                             return c >= '0' && c <= '9';
+                         }));
+    if (!plain_port) {
+        return bad_request("the Host header's port is no number");
+    }
     // A page of another site that lets its name point here (DNS rebinding) ends at this line.
     if (std::find(rules.hosts.begin(), rules.hosts.end(), name) == rules.hosts.end()) {
         return Refusal{421, "misdirected", "this daemon does not answer to that host name"};

@@ -70,12 +70,16 @@ Parking::~Parking() {
 
 void Parking::park(int fd, std::string bytes) {
     const auto time = bytes.empty() ? limits_.idle_time : limits_.head_time;
-    arrive(fd, {std::move(bytes), Clock::now() + time, Stay::Waiting});
+    arrive(fd, {std::move(bytes), Clock::now() + time, Stay::Waiting, 0});
+}
+
+void Parking::park_for_body(int fd, std::string bytes, std::size_t wanted) {
+    arrive(fd, {std::move(bytes), Clock::now() + limits_.body_time, Stay::Waiting, wanted});
 }
 
 void Parking::drain(int fd) {
     ::shutdown(fd, SHUT_WR);
-    arrive(fd, {{}, Clock::now() + limits_.drain_time, Stay::Draining});
+    arrive(fd, {{}, Clock::now() + limits_.drain_time, Stay::Draining, 0});
 }
 
 void Parking::arrive(int fd, Guest guest) {
@@ -125,7 +129,7 @@ void Parking::admit_arrivals() {
         }
         add_to_epoll(epoll_, arrival.fd);
         Guest& guest = guests_[arrival.fd] = std::move(arrival.guest);
-        take_head_if_whole(arrival.fd, guest);
+        take_if_whole(arrival.fd, guest);
     }
 }
 
@@ -149,11 +153,11 @@ void Parking::serve(int fd) {
     if (first_bytes && !guest.bytes.empty()) {
         guest.leaves = Clock::now() + limits_.head_time;
     }
-    take_head_if_whole(fd, guest);
+    take_if_whole(fd, guest);
 }
 
-void Parking::take_head_if_whole(int fd, Guest& guest) {
-    if (guest.stay == Stay::Draining) {
+void Parking::take_if_whole(int fd, Guest& guest) {
+    if (guest.stay == Stay::Draining || guest.bytes.size() < guest.wanted) {
         return;
     }
     const std::size_t end = guest.bytes.find(kHeadEnd);

@@ -18,6 +18,7 @@ namespace leafcutter::server {
 
 struct ParkingLimits {
     std::chrono::milliseconds head_time{5000};   // From a head's first byte to its last.
+    std::chrono::milliseconds body_time{10000};  // For a body that is waited for here.
     std::chrono::milliseconds idle_time{30000};  // Between two requests.
     std::chrono::milliseconds drain_time{1000};  // For the last bytes of a refused client.
     std::size_t connections = 1024;
@@ -40,6 +41,9 @@ public:
     // Takes a connection over; `bytes` were read from it already. Any thread.
     void park(int fd, std::string bytes = {});
 
+    // The same for one whose head is whole: it is ready when `wanted` bytes have come in all.
+    void park_for_body(int fd, std::string bytes, std::size_t wanted);
+
     // Takes a connection over whose answer is written: says so, reads on for a moment so that the
     // answer is not lost with what is still coming, and closes.
     void drain(int fd);
@@ -53,6 +57,7 @@ private:
         std::string bytes;
         Clock::time_point leaves;
         Stay stay = Stay::Waiting;
+        std::size_t wanted = 0;  // 0: a head.
     };
 
     struct Arrival {
@@ -63,7 +68,7 @@ private:
     void loop(const std::stop_token& stop);
     void admit_arrivals();
     void serve(int fd);
-    void take_head_if_whole(int fd, Guest& guest);
+    void take_if_whole(int fd, Guest& guest);
     void expel_late_ones();
     void leave(int fd);
     void arrive(int fd, Guest guest);

@@ -34,6 +34,8 @@ std::string_view title_of(int status) {
             return "Not in this state";
         case 411:
             return "The body's length is missing";
+        case 412:
+            return "Changed meanwhile";
         case 413:
             return "Too large";
         case 415:

@@ -44,7 +44,8 @@ public:
     virtual std::optional<CutRecord> find(const std::string& id) const = 0;
 
     // Newest first.
-    virtual std::vector<CutRecord> list(int limit) const = 0;
+    virtual std::vector<CutRecord> list(
+        int limit, std::optional<std::int64_t> below_ordinal = std::nullopt) const = 0;
 
     // The cuts of a device that are not over, in the order of its queue.
     virtual std::vector<CutRecord> open_on(const std::string& device) const = 0;

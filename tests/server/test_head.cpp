@@ -49,6 +49,8 @@ TEST(Head, AnswersOnlyToItsOwnNames) {
     EXPECT_EQ(verdict("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"), 0);
     EXPECT_EQ(verdict("GET / HTTP/1.1\r\nHost: [::1]:8080\r\n\r\n"), 0);
     EXPECT_EQ(verdict("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n"), 421);
+    EXPECT_EQ(verdict("GET / HTTP/1.1\r\nHost: localhost:x@evil\r\n\r\n"), 400);
+    EXPECT_EQ(verdict("GET / HTTP/1.1\r\nHost: localhost:\r\n\r\n"), 400);
     EXPECT_EQ(verdict("GET / HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n"), 400);
     EXPECT_EQ(verdict("GET / HTTP/1.1\r\n\r\n"), 400);
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/app.h"
+#include "server/http/api/conditional.h"
 #include "server/http/api/handlers.h"
 #include "server/http/api/lookup.h"
 #include "server/http/guard.h"
@@ -128,12 +129,12 @@ KeyWish key_wish(const json& body) {
 
 }  // namespace
 
-Response list_users(App& app, Request&) {
+Response list_users(App& app, Request& request) {
     json users = json::array();
     for (const User& user : app.accounts().users()) {
         users.push_back(user_json(user));
     }
-    return json_response({{"users", users}, {"next_cursor", nullptr}});
+    return json_response(paged("users", std::move(users), "name", request));
 }
 
 Response add_user(App& app, Request& request) {
@@ -187,7 +188,7 @@ Response list_keys(App& app, Request& request) {
             keys.push_back(key_json(key));
         }
     }
-    return json_response({{"keys", keys}, {"next_cursor", nullptr}});
+    return json_response(paged("keys", std::move(keys), "id", request));
 }
 
 Response add_key(App& app, Request& request) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/app.h"
+#include "server/http/api/conditional.h"
 #include "server/http/api/handlers.h"
 #include "server/http/api/lookup.h"
 #include "server/http/problem.h"
@@ -91,7 +92,7 @@ Response list_artifacts(App& app, Request& request) {
                              {"sha256", artifact.sha256},
                              {"media_type", artifact.media_type}});
     }
-    return json_response({{"artifacts", artifacts}});
+    return json_response(paged("artifacts", std::move(artifacts), "path", request));
 }
 
 Response show_artifact(App& app, Request& request) {

@@ -177,13 +177,16 @@ Response create_cut(App& app, Request& request) {
     return response;
 }
 
-Response list_cuts(App& app, Request&) {
-    constexpr int kMost = 200;
+Response list_cuts(App& app, Request& request) {
+    const Page page = page_in(request);
     json cuts = json::array();
-    for (const CutRecord& cut : app.store().cuts.list(kMost)) {
+    const std::vector<CutRecord> records = app.store().cuts.list(page.limit, page.cursor);
+    for (const CutRecord& cut : records) {
         cuts.push_back(cut_json(app, cut));
     }
-    return json_response({{"cuts", cuts}});
+    const bool full = static_cast<int>(records.size()) == page.limit;
+    const json cursor = full ? json(std::to_string(records.back().ordinal)) : json();
+    return json_response({{"cuts", cuts}, {"next_cursor", cursor}});
 }
 
 Response show_cut(App& app, Request& request) {

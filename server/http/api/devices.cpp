@@ -11,6 +11,7 @@
 
 #include "drivers/port_discovery.h"
 #include "server/app.h"
+#include "server/http/api/conditional.h"
 #include "server/http/api/handlers.h"
 #include "server/http/api/lookup.h"
 #include "server/http/api/views.h"
@@ -169,26 +170,44 @@ constexpr NamedCommand kCommands[] = {
      Role::Operator, Beam::MayFire},
 };
 
+json changeable(const DeviceRecord& device) {
+    return {{"id", device.id},
+            {"name", device.name},
+            {"uri", device.uri},
+            {"auto_start", device.auto_start},
+            {"bed_mm", device.bed_mm}};
+}
+
+Response tagged(const DeviceRunner& runner, int status) {
+    return tagged_response(device_json(runner), changeable(runner.record()), status);
+}
+
 }  // namespace
 
-Response list_devices(App& app, Request&) {
+Response list_devices(App& app, Request& request) {
     json devices = json::array();
     for (const auto& runner : app.fleet().all()) {
         devices.push_back(device_json(*runner));
     }
-    return json_response({{"devices", devices}});
+    return json_response(paged("devices", std::move(devices), "id", request));
 }
 
 Response show_device(App& app, Request& request) {
-    return json_response(device_json(*find_device(app, request)));
+    return tagged(*find_device(app, request), 200);
 }
 
 Response put_device(App& app, Request& request) {
     const std::string& id = request.capture("id");
-    const bool is_new = app.fleet().find(id) == nullptr;
-    app.fleet().put(device_in(read_json_object(request), id, app.burn_logs()));
+    const DeviceRecord wanted = device_in(read_json_object(request), id, app.burn_logs());
+    bool is_new = true;
+    const ConditionalChange change(request, [&]() -> std::optional<json> {
+        const auto known = app.fleet().find(id);
+        is_new = known == nullptr;
+        return known ? std::optional(changeable(known->record())) : std::nullopt;
+    });
+    app.fleet().put(wanted);
     app.hub().post("device", id);
-    return json_response(device_json(*find_device(app, request)), is_new ? 201 : 200);
+    return tagged(*find_device(app, request), is_new ? 201 : 200);
 }
 
 Response delete_device(App& app, Request& request) {

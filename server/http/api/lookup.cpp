@@ -37,13 +37,14 @@ Response json_response(const nlohmann::json& value, int status) {
     return response;
 }
 
-Page page_in(const Request& request) {
+int limit_in(const Request& request) {
     constexpr std::int64_t kMost = 200;
-    Page page;
-    const std::int64_t limit = query_number(request, "limit").value_or(page.limit);
-    page.limit = static_cast<int>(std::clamp<std::int64_t>(limit, 1, kMost));
-    page.cursor = query_number(request, "cursor");
-    return page;
+    const std::int64_t limit = query_number(request, "limit").value_or(Page{}.limit);
+    return static_cast<int>(std::clamp<std::int64_t>(limit, 1, kMost));
+}
+
+Page page_in(const Request& request) {
+    return {limit_in(request), query_number(request, "cursor")};
 }
 
 JobRecord find_job(App& app, const Request& request) {

@@ -24,8 +24,9 @@ struct Page {
     std::optional<std::int64_t> cursor;
 };
 
-// Throws HttpProblem (400).
+// Throw HttpProblem (400).
 Page page_in(const Request& request);
+int limit_in(const Request& request);
 
 // Of the route's {id}. Throws HttpProblem (404).
 JobRecord find_job(App& app, const Request& request);

@@ -8,6 +8,7 @@
 
 #include "fab/material/material.h"
 #include "server/app.h"
+#include "server/http/api/conditional.h"
 #include "server/http/api/handlers.h"
 #include "server/http/api/lookup.h"
 #include "server/http/json_body.h"
@@ -51,17 +52,18 @@ json view_of(const Shelf& shelf, const std::string& id) {
 
 }  // namespace
 
-Response list_materials(App& app, Request&) {
+Response list_materials(App& app, Request& request) {
     const Shelf shelf = shelf_of(app);
     json materials = json::array();
     for (const fab::Material& material : shelf.all) {
         materials.push_back(view_of(shelf, material));
     }
-    return json_response({{"materials", std::move(materials)}});
+    return json_response(paged("materials", std::move(materials), "id", request));
 }
 
 Response show_material(App& app, Request& request) {
-    return json_response(view_of(shelf_of(app), request.capture("id")));
+    const json view = view_of(shelf_of(app), request.capture("id"));
+    return tagged_response(view, view);
 }
 
 Response put_material(App& app, Request& request) {
@@ -72,10 +74,16 @@ Response put_material(App& app, Request& request) {
     if (!named.second && *named.first != id) {
         throw HttpProblem(422, "bad-field", "id: must be the one of the address, or be left out");
     }
+    const ConditionalChange change(request, [&]() -> std::optional<json> {
+        const Shelf shelf = shelf_of(app);
+        const fab::Material* known = fab::find_material(shelf.all, id);
+        return known == nullptr ? std::nullopt : std::optional(view_of(shelf, *known));
+    });
     const fab::Material material = material_from_json(body, "", shelf_of(app).all);
     const bool is_new = app.store().materials.put({id, dump_json(material_to_json(material))});
     const bool built_in = fab::find_material(fab::built_in_materials(), id) != nullptr;
-    return json_response(view_of(shelf_of(app), id), is_new && !built_in ? 201 : 200);
+    const json view = view_of(shelf_of(app), id);
+    return tagged_response(view, view, is_new && !built_in ? 201 : 200);
 }
 
 Response import_materials(App& app, Request& request) {

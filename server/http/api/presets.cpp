@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/app.h"
+#include "server/http/api/conditional.h"
 #include "server/http/api/handlers.h"
 #include "server/http/api/lookup.h"
 #include "server/http/json_body.h"
@@ -91,8 +92,10 @@ json all_presets(App& app) {
 
 }  // namespace
 
-Response list_presets(App& app, Request&) {
-    return json_response(all_presets(app));
+Response list_presets(App& app, Request& request) {
+    json all = all_presets(app);
+    all.update(paged("presets", std::move(all["presets"]), "id", request));
+    return json_response(all);
 }
 
 Response import_presets(App& app, Request& request) {
@@ -115,7 +118,8 @@ Response import_presets(App& app, Request& request) {
 }
 
 Response show_preset(App& app, Request& request) {
-    return json_response(find_view(app, request.capture("id")));
+    const json view = find_view(app, request.capture("id"));
+    return tagged_response(view, view);
 }
 
 Response put_preset(App& app, Request& request) {

@@ -10,6 +10,7 @@
 #include "fab/material/material.h"
 #include "fab/package/records.h"
 #include "server/app.h"
+#include "server/http/api/conditional.h"
 #include "server/http/api/handlers.h"
 #include "server/http/api/lookup.h"
 #include "server/http/json_body.h"
@@ -109,8 +110,10 @@ json all_stock(App& app) {
 
 }  // namespace
 
-Response list_stock(App& app, Request&) {
-    return json_response(all_stock(app));
+Response list_stock(App& app, Request& request) {
+    json all = all_stock(app);
+    all.update(paged("stock", std::move(all["stock"]), "id", request));
+    return json_response(all);
 }
 
 Response import_stock(App& app, Request& request) {
@@ -128,7 +131,8 @@ Response import_stock(App& app, Request& request) {
 }
 
 Response show_stock(App& app, Request& request) {
-    return json_response(view_of(find_stock(app, request)));
+    const json view = view_of(find_stock(app, request));
+    return tagged_response(view, view);
 }
 
 Response put_stock(App& app, Request& request) {
@@ -138,8 +142,13 @@ Response put_stock(App& app, Request& request) {
     if (!named.second && *named.first != id) {
         throw HttpProblem(422, "bad-field", "id: must be the one of the address, or be left out");
     }
+    const ConditionalChange change(request, [&]() -> std::optional<json> {
+        const auto known = app.store().stock.find(id);
+        return known ? std::optional(view_of(*known)) : std::nullopt;
+    });
     const bool is_new = app.store().stock.put(record_from(app, std::move(body), ""));
-    return json_response(view_of(find_stock(app, request)), is_new ? 201 : 200);
+    const json view = view_of(find_stock(app, request));
+    return tagged_response(view, view, is_new ? 201 : 200);
 }
 
 Response delete_stock(App& app, Request& request) {

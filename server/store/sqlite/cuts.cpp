@@ -1,6 +1,7 @@
 #include "server/store/sqlite/cuts.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
@@ -144,12 +145,14 @@ std::optional<CutRecord> SqliteCutStore::find(const std::string& id) const {
     return cut;
 }
 
-std::vector<CutRecord> SqliteCutStore::list(int limit) const {
+std::vector<CutRecord> SqliteCutStore::list(int limit,
+                                            std::optional<std::int64_t> below_ordinal) const {
     std::vector<CutRecord> cuts;
     database_.read([&](SQLite::Database& database) {
-        SQLite::Statement query(database,
-                                std::string(kSelectCut) + "ORDER BY ordinal DESC LIMIT ?");
-        query.bind(1, limit);
+        SQLite::Statement query(
+            database, std::string(kSelectCut) + "WHERE ordinal < ? ORDER BY ordinal DESC LIMIT ?");
+        query.bind(1, below_ordinal.value_or(std::numeric_limits<std::int64_t>::max()));
+        query.bind(2, limit);
         while (query.executeStep()) {
             cuts.push_back(cut_from(database, query));
         }

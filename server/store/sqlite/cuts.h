@@ -14,7 +14,8 @@ public:
 
     std::vector<CutRecord> add(const std::string& job, const std::vector<CutWish>& wishes) override;
     std::optional<CutRecord> find(const std::string& id) const override;
-    std::vector<CutRecord> list(int limit) const override;
+    std::vector<CutRecord> list(int limit,
+                                std::optional<std::int64_t> below_ordinal) const override;
     std::vector<CutRecord> open_on(const std::string& device) const override;
     bool move(const std::string& id,
               CutState from,
