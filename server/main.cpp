@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
     add_sample_command(app, common);
     add_weave_command(app, common);
     add_serve_command(app, common);
+    add_user_command(app, common);
     add_submit_command(app, common);
     add_send_command(app, common);
     add_simulate_command(app, common);

@@ -57,7 +57,9 @@ void read_shape(ObjectReader& reader, fab::StockItem& item) {
     read_zones(reader, "keep_out", fab::ZoneKind::KeepOut, item);
 }
 
-fab::StockItem read_item(const json& entry, const std::string& path) {
+}  // namespace
+
+fab::StockItem read_stock_item(const json& entry, const std::string& path) {
     ObjectReader reader(entry, path);
     fab::StockItem item;
     reader.text("id", item.id);
@@ -80,9 +82,6 @@ fab::StockItem read_item(const json& entry, const std::string& path) {
     fab::move_to_origin(item);
     return item;
 }
-
-}  // namespace
-
 std::vector<fab::StockItem> read_stock(const json& value, const std::string& path) {
     if (!value.is_array() || value.size() > kMostSheets) {
         refuse_param(path, fmt::format("must be a list of up to {} sheets", kMostSheets));
@@ -91,7 +90,7 @@ std::vector<fab::StockItem> read_stock(const json& value, const std::string& pat
     std::set<std::string> ids;
     for (std::size_t i = 0; i < value.size(); ++i) {
         const std::string where = fmt::format("{}[{}]", path, i);
-        stock.push_back(read_item(value[i], where));
+        stock.push_back(read_stock_item(value[i], where));
         if (!ids.insert(stock.back().id).second) {
             refuse_param(where + ".id",
                          fmt::format("{} is there twice; raise the first one's quantity, or name "

@@ -19,6 +19,9 @@ namespace leafcutter::server {
 // twice.
 std::vector<fab::StockItem> read_stock(const nlohmann::json& value, const std::string& path);
 
+// One such entry.
+fab::StockItem read_stock_item(const nlohmann::json& entry, const std::string& path);
+
 // The sheets of a file: such a list, or {"format": "leafcutter-stock/1", "stock": list} as packages
 // hold it. Throws as above.
 nlohmann::json stock_of_text(std::string_view text);

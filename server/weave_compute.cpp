@@ -1,5 +1,7 @@
 #include "server/weave_compute.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -23,6 +25,35 @@ std::string summary_json(const fab::PackageSummary& summary) {
     return text.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+// What each sheet is cut from and what it leaves. The offcuts are the last entries of stock.json,
+// in the order of their sheets.
+void add_places(const fab::Package& package, std::vector<SheetPlan>& plans) {
+    const fab::PackageFile* layout = package.find("layout.json");
+    const fab::PackageFile* stock = package.find("stock.json");
+    if (layout == nullptr) {
+        return;
+    }
+    const json parsed = json::parse(layout->bytes);
+    const json left = stock == nullptr ? json::object() : json::parse(stock->bytes);
+    const json entries = left.value("stock", json::array());
+    const json& sheets = parsed.at("sheets");
+    const auto leaves = [](const json& sheet) { return sheet.count("offcut") != 0; };
+    std::size_t offcuts =
+        static_cast<std::size_t>(std::count_if(sheets.begin(), sheets.end(), leaves));
+    for (std::size_t i = 0; i < sheets.size() && i < plans.size(); ++i) {
+        const json& sheet = sheets[i];
+        plans[i].size_mm = {sheet.at("width_mm").get<double>(),
+                            sheet.at("height_mm").get<double>()};
+        plans[i].stock = sheet.value("stock", "");
+        if (leaves(sheet)) {
+            if (offcuts <= entries.size()) {
+                plans[i].offcut_json = entries[entries.size() - offcuts].dump();
+            }
+            --offcuts;
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<SheetPlan> sheets_in(const fab::Package& package) {
@@ -40,6 +71,7 @@ std::vector<SheetPlan> sheets_in(const fab::Package& package) {
         plan.program_path = fmt::format("sheets/sheet-{:03}.gcode", plan.number);
         sheets.push_back(std::move(plan));
     }
+    add_places(package, sheets);
     return sheets;
 }
 

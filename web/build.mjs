@@ -37,7 +37,7 @@ const pagePlugin = {
 
 const options = {
   absWorkingDir: root,
-  entryPoints: ['src/main.tsx', 'src/icon.svg'],
+  entryPoints: ['src/main.tsx', 'src/mesh/worker.ts', 'src/icon.svg'],
   outdir: 'dist/assets',
   entryNames: '[name]-[hash]',
   chunkNames: '[name]-[hash]',

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "fab/nest/heap_start.h"
 #include "fab/nest/instance_bins.h"
@@ -166,12 +167,32 @@ Packing in_a_row(const std::vector<Packing>& stretches,
     return whole;
 }
 
+// One stretch of `count` items in all; the others are left out.
+Packing alone(const Packing& stretch, const std::vector<std::size_t>& items, std::size_t count) {
+    Packing packing;
+    packing.extent = stretch.extent;
+    packing.positions.resize(count);
+    for (Position& at : packing.positions) {
+        at.bin = -1;
+    }
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        packing.positions[items[i]] = stretch.positions[i];
+    }
+    return packing;
+}
+
+// What is thought of a packing.
+struct Judge {
+    std::function<bool(const Packing&)> sound;   // Of some of the items.
+    std::function<bool(const Packing&)> accept;  // Of all: sound, and taken as the best so far.
+};
+
 // A strip in stretches that are searched one by one, each with its share of the work.
 Packing compact_stretches(const BoardPlan& plan,
                           const Packing& start,
                           const CompactionOptions& options,
                           const geometry::Context& context,
-                          const std::function<bool(const Packing&)>& accept) {
+                          const Judge& judge) {
     const auto count = static_cast<std::size_t>(start.extent.bins);
     std::vector<std::vector<std::size_t>> items(count);
     for (std::size_t item = 0; item < start.positions.size(); ++item) {
@@ -190,7 +211,7 @@ Packing compact_stretches(const BoardPlan& plan,
         }
         stretches[k].extent = {1, k + 1 == count ? start.extent.last_width : plan.rooms[k].width};
     }
-    accept(in_a_row(stretches, items));
+    judge.accept(in_a_row(stretches, items));
     CompactionOptions share = options;
     share.max_evaluations = options.max_evaluations / start.extent.bins;
     share.time_s = options.time_s / start.extent.bins;
@@ -200,9 +221,10 @@ Packing compact_stretches(const BoardPlan& plan,
             context.report(stage, (static_cast<double>(k) + fraction) / static_cast<double>(count));
         };
         const Packing before = stretches[k];
-        stretches[k] =
-            compact(plans[k], stretches[k], share, part, [](const Packing&) { return true; });
-        if (!accept(in_a_row(stretches, items))) {
+        stretches[k] = compact(plans[k], before, share, part, [&](const Packing& better) {
+            return judge.sound(alone(better, items[k], start.positions.size()));
+        });
+        if (!judge.accept(in_a_row(stretches, items))) {
             stretches[k] = before;
         }
     }
@@ -229,14 +251,20 @@ InstanceSolution solve(const NestInstance& instance,
         return none;
     }
     InstanceSolution best;
-    const auto accept = [&](const Packing& better) {
+    const auto proven = [&](const Packing& laid) -> std::optional<InstanceSolution> {
         try {
-            InstanceSolution solution = solution_of(problem, better);
-            solution.unplaced = none.unplaced;
-            best = std::move(solution);
+            return solution_of(problem, laid);
         } catch (const geometry::Error&) {
+            return std::nullopt;
+        }
+    };
+    const auto accept = [&](const Packing& better) {
+        std::optional<InstanceSolution> solution = proven(better);
+        if (!solution) {
             return false;
         }
+        best = std::move(*solution);
+        best.unplaced = none.unplaced;
         if (improved) {
             improved(best);
         }
@@ -250,7 +278,8 @@ InstanceSolution solve(const NestInstance& instance,
     };
     Packing found;
     if (banded && packing.extent.bins > 1) {
-        found = compact_stretches(problem.plan, packing, options, context, accept);
+        const Judge judge{[&](const Packing& part) { return proven(part).has_value(); }, accept};
+        found = compact_stretches(problem.plan, packing, options, context, judge);
     } else {
         prove_first();
         found = compact(problem.plan, packing, options, context, accept);

@@ -49,6 +49,7 @@ void add_recut_command(CLI::App& app, const CommonOptions& common);
 void add_audit_command(CLI::App& app, const CommonOptions& common);
 void add_burn_picture_command(CLI::App& app, const CommonOptions& common);
 void add_serve_command(CLI::App& app, const CommonOptions& common);
+void add_user_command(CLI::App& app, const CommonOptions& common);
 void add_submit_command(CLI::App& app, const CommonOptions& common);
 void add_send_command(CLI::App& app, const CommonOptions& common);
 void add_simulate_command(CLI::App& app, const CommonOptions& common);

@@ -6,15 +6,17 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "drivers/device.h"
 #include "server/app.h"
 #include "server/cli/command.h"
 #include "server/cli/interrupt.h"
+#include "server/cli/service_notice.h"
+#include "server/log_format.h"
 #include "server/recut_compute.h"
 #include "server/weave_compute.h"
 
@@ -53,24 +55,33 @@ void wait_for_stop(const std::stop_token& stop) {
     never.wait(lock, stop, [] { return false; });
 }
 
+std::unique_ptr<App> started(const Config& config, AppParts parts) {
+    try {
+        return std::make_unique<App>(config, std::move(parts));
+    } catch (const BadConfig& error) {
+        throw UsageError(error.what());
+    }
+}
+
 void serve(const ServeOptions& options) {
     std::signal(SIGPIPE, SIG_IGN);
     const InterruptWatch interrupt;
     const Config config = wanted_config(options);
-    spdlog::set_default_logger(spdlog::stderr_color_mt("leafcutter"));
-    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+    begin_log(config.log_format);
     AppParts parts;
     parts.compute = weave_job;
     parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
     parts.check_params = check_job_params;
     parts.recut = recut_job_pieces;
-    App app(config, std::move(parts));
+    const std::unique_ptr<App> app = started(config, std::move(parts));
     const bool v6 = config.listen.address.find(':') != std::string::npos;
     const std::string address = v6 ? "[" + config.listen.address + "]" : config.listen.address;
-    std::printf("leafcutter: http://%s:%d/\n", address.c_str(), app.port());
+    std::printf("leafcutter: http://%s:%d/\n", address.c_str(), app->port());
     std::fflush(stdout);
     spdlog::info("state in {}", config.state.string());
+    notify_service_manager("READY=1");
     wait_for_stop(interrupt.token());
+    notify_service_manager("STOPPING=1");
     spdlog::info("stopping");
 }
 

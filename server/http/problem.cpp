@@ -6,9 +6,11 @@
 
 #include "drivers/device.h"
 #include "geometry/error.h"
+#include "server/auth/accounts.h"
 #include "server/http/json_body.h"
 #include "server/store/cut_store.h"
 #include "server/store/job_store.h"
+#include "server/store/store_error.h"
 
 namespace leafcutter::server {
 
@@ -18,6 +20,8 @@ std::string_view title_of(int status) {
     switch (status) {
         case 400:
             return "The request is malformed";
+        case 401:
+            return "Who are you?";
         case 403:
             return "Not allowed";
         case 404:
@@ -40,6 +44,8 @@ std::string_view title_of(int status) {
             return "Wrong host";
         case 422:
             return "A value is not possible";
+        case 429:
+            return "Too many tries";
         case 431:
             return "The head is too large";
         case 503:
@@ -64,6 +70,23 @@ std::string pointer_in(const std::string& message) {
         }
     }
     return pointer;
+}
+
+HttpProblem problem_of(const StoreError& error) {
+    spdlog::error("store: {}", error.what());
+    switch (error.trouble()) {
+        case StoreTrouble::Busy:
+            return {503, "store-busy", "the database is held by somebody else: try again"};
+        case StoreTrouble::Full:
+            return {507, "disk", "the disk is full: nothing was changed"};
+        case StoreTrouble::ReadOnly:
+            return {503, "read-only", "the store takes no changes: see /readyz"};
+        case StoreTrouble::Damaged:
+            return {503, "store-damaged", "this can't be read: the database is damaged"};
+        case StoreTrouble::Failed:
+            break;
+    }
+    return {503, "store-failed", "the database failed: see the log"};
 }
 
 }  // namespace
@@ -107,9 +130,18 @@ Response response_to(const std::exception& error) {
     if (dynamic_cast<const KeyReused*>(&error) != nullptr) {
         return problem_response({422, "idempotency-key-reused", error.what()});
     }
+    if (dynamic_cast<const BadAccount*>(&error) != nullptr) {
+        return problem_response({422, "bad-field", error.what()});
+    }
+    if (dynamic_cast<const LastAdmin*>(&error) != nullptr) {
+        return problem_response({409, "last-admin", error.what()});
+    }
     if (dynamic_cast<const BlobWriteFailed*>(&error) != nullptr) {
         spdlog::error("blob store: {}", error.what());
         return problem_response({507, "disk", "the file could not be stored"});
+    }
+    if (const auto* store = dynamic_cast<const StoreError*>(&error)) {
+        return problem_response(problem_of(*store));
     }
     spdlog::error("request failed: {}", error.what());  // The client gets no word of its insides.
     return problem_response({500, "internal", "an internal error; the log has more"});

@@ -6,9 +6,11 @@
 #include <string_view>
 #include <utility>
 
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "geometry/error.h"
+#include "server/stock_choice.h"
 
 namespace leafcutter::server {
 
@@ -72,7 +74,8 @@ ComputedJob stored_result(const Blobs& blobs, const ComputeOutput& output) {
                 return !plan.program_path.empty() && file.path == plan.program_path;
             });
         const std::string sha256 = program == result.artifacts.end() ? "" : program->sha256;
-        result.sheets.push_back({plan.number, plan.material, sha256, plan.estimated_s, false});
+        result.sheets.push_back({plan.number, plan.material, sha256, plan.estimated_s, false,
+                                 plan.size_mm, plan.stock, plan.offcut_json});
     }
     return result;
 }
@@ -187,8 +190,8 @@ void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
     };
     try {
         const std::unique_ptr<MappedBlob> mesh = store_.blobs.map(job.file.sha256);
-        finish(job, compute_({job.file.name, mesh->bytes(), job.params_json, job.name,
-                              store_.materials.records()},
+        finish(job, compute_({job.file.name, mesh->bytes(), params_of(job), job.name,
+                              texts_of(store_.materials.list())},
                              context));
     } catch (const geometry::Cancelled&) {
         const bool requeued = stop.stop_requested() && store_.jobs.requeue(job.id);
@@ -199,6 +202,13 @@ void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
     } catch (...) {  // A thread's top: whatever it was, only this job fails.
         store_.jobs.fail(job.id, {"internal", "internal", "the computation broke down"});
     }
+}
+
+// With the sheets of the store that it names, as they are at hand now.
+std::string ComputeRunner::params_of(const JobRecord& job) const {
+    nlohmann::json params = nlohmann::json::parse(job.params_json);
+    return names_stock(params) ? with_stock(std::move(params), store_.stock.list()).dump()
+                               : job.params_json;
 }
 
 void ComputeRunner::finish(const JobRecord& job, const ComputeOutput& output) {

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -34,6 +35,9 @@ struct SheetPlan {
     std::string material;
     std::string program_path;  // Inside the package; empty if the sheet has no program.
     double estimated_s = 0.0;
+    std::array<double, 2> size_mm{};  // 0: not known.
+    std::string stock;                // The entry of the stock it is of; empty: a new one.
+    std::string offcut_json;          // As an entry of nesting.stock; empty: it leaves nothing.
 };
 
 struct ComputeOutput {
@@ -87,6 +91,7 @@ private:
     void loop(const std::stop_token& stop);
     bool compute_next(const std::stop_token& stop);
     void compute(const JobRecord& job, const std::stop_token& stop);
+    std::string params_of(const JobRecord& job) const;
     void finish(const JobRecord& job, const ComputeOutput& output);
     void note_progress(const std::string& id, std::string_view stage, double fraction);
 

@@ -123,9 +123,9 @@ void note_found(Store& store, const std::string& device, const drivers::DeviceSt
     beam.position_kept = false;
     if (!fresh) {
         drivers::append_record(journal_of(store, *cut),
-                      {.kind = JournalRecord::Kind::Found,
-                       .at_mm = {status.work_position_mm[0], status.work_position_mm[1]},
-                       .end = locked ? BeamEnd::Stopped : BeamEnd::Stands});
+                               {.kind = JournalRecord::Kind::Found,
+                                .at_mm = {status.work_position_mm[0], status.work_position_mm[1]},
+                                .end = locked ? BeamEnd::Stopped : BeamEnd::Stands});
         beam = read_beam(store, *cut).value_or(beam);
     }
     store.cuts.record_beam(cut->id, beam);

@@ -90,6 +90,9 @@ void DeviceRunner::step() {
 }
 
 void DeviceRunner::take_up_next() {
+    if (closing_) {
+        return;
+    }
     std::optional<std::string> frame;
     {
         const std::scoped_lock lock(mutex_);
@@ -122,6 +125,9 @@ void DeviceRunner::take_up_next() {
 // The configuration speaks for the operator here; a cut between two sheets goes on first. The rest
 // of a cut that ended early never goes by itself.
 void DeviceRunner::start_next_of(const std::vector<CutRecord>& open) {
+    if (open.empty() || store_.jobs.queue_pause()) {
+        return;
+    }
     const auto begun = std::find_if(
         open.begin(), open.end(), [](const CutRecord& cut) { return occupies_device(cut.state); });
     const auto fresh =
@@ -210,7 +216,8 @@ void DeviceRunner::wind_down() {
     drivers::JobProgress last = machine->progress();
     close_beam(last);
     if (last.outcome != JobOutcome::Done) {
-        last.outcome = JobOutcome::LinkLost;
+        const bool aborts = hooks_.stop_policy == StopPolicy::Abort;
+        last.outcome = aborts ? JobOutcome::Aborted : JobOutcome::LinkLost;
         last.reason = "the daemon was stopped";
     }
     settle(last);

@@ -30,15 +30,18 @@ constexpr std::array<std::pair<Cut, std::string_view>, 9> kCutNames{
      {Cut::Failed, "failed"},
      {Cut::Interrupted, "interrupted"}}};
 
-// Computing -> queued: the daemon died while computing, or stops; geometry is at-least-once.
-constexpr std::array<std::pair<Job, Job>, 8> kJobMoves{{{Job::Queued, Job::Computing},
-                                                        {Job::Queued, Job::Cancelled},
-                                                        {Job::Computing, Job::Ready},
-                                                        {Job::Computing, Job::Failed},
-                                                        {Job::Computing, Job::Cancelled},
-                                                        {Job::Computing, Job::Queued},
-                                                        {Job::Ready, Job::Done},
-                                                        {Job::Queued, Job::Failed}}};
+// Computing -> queued: the daemon died while computing, or stops; geometry is at-least-once. Failed
+// or cancelled -> queued: somebody wants it tried again.
+constexpr std::array<std::pair<Job, Job>, 10> kJobMoves{{{Job::Queued, Job::Computing},
+                                                         {Job::Queued, Job::Cancelled},
+                                                         {Job::Computing, Job::Ready},
+                                                         {Job::Computing, Job::Failed},
+                                                         {Job::Computing, Job::Cancelled},
+                                                         {Job::Computing, Job::Queued},
+                                                         {Job::Ready, Job::Done},
+                                                         {Job::Queued, Job::Failed},
+                                                         {Job::Failed, Job::Queued},
+                                                         {Job::Cancelled, Job::Queued}}};
 
 // No state but armed leads to cutting except a pause, and nothing leads out of interrupted: the
 // beam is at-most-once. Armed -> waiting / awaiting-sheet: arming never survives a restart.

@@ -17,6 +17,8 @@
 
 #include <fmt/format.h>
 
+#include "server/crash_point.h"
+#include "server/store/durable_file.h"
 #include "server/store/ids.h"
 
 namespace leafcutter::server {
@@ -30,10 +32,11 @@ namespace {
         fmt::format("{} {}: {}", what, path.string(), std::generic_category().message(errno)));
 }
 
-void sync_folder(const fs::path& folder) {
-    const FileHandle handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (handle.fd() < 0 || ::fsync(handle.fd()) != 0) {
-        fail("cannot sync folder", folder);
+void sync_shelf(const fs::path& shelf) {
+    try {
+        sync_folder(shelf);
+    } catch (const std::system_error& error) {
+        throw BlobWriteFailed(error.what());
     }
 }
 
@@ -119,7 +122,7 @@ BlobId BlobWriter::finish() {
     const fs::path target = shelf / id_.sha256;
     std::error_code error;
     if (fs::create_directory(shelf, error)) {
-        sync_folder(folder_);
+        sync_shelf(folder_);
     }
     if (fs::exists(target, error)) {
         ::utimensat(AT_FDCWD, target.c_str(), nullptr, 0);  // Young again, so no sweep takes it.
@@ -128,11 +131,13 @@ BlobId BlobWriter::finish() {
     if (::fsync(fd_) != 0) {
         fail("cannot sync", temporary_);
     }
+    crash_point("blob.before-rename");
     if (::rename(temporary_.c_str(), target.c_str()) != 0) {
         fail("cannot rename to", target);
     }
     temporary_.clear();
-    sync_folder(shelf);
+    crash_point("blob.after-rename");
+    sync_shelf(shelf);
     return id_;
 }
 
@@ -228,7 +233,7 @@ bool Blobs::has_room_for(std::int64_t bytes) const {
     return free - bytes >= std::min(all / 10, kLargestReserve);
 }
 
-void Blobs::sweep(const std::function<bool(const std::string&)>& is_referenced) const {
+std::size_t Blobs::sweep(const std::function<bool(const std::string&)>& is_referenced) const {
     const auto yesterday = fs::file_time_type::clock::now() - std::chrono::hours(24);
     std::vector<fs::path> stale;
     for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
@@ -242,6 +247,7 @@ void Blobs::sweep(const std::function<bool(const std::string&)>& is_referenced) 
         std::error_code error;
         fs::remove(path, error);
     }
+    return stale.size();
 }
 
 }  // namespace leafcutter::server

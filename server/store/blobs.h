@@ -112,8 +112,8 @@ public:
     bool has_room_for(std::int64_t bytes) const;
 
     // Removes blobs that `is_referenced` denies and that are older than a day: younger ones may be
-    // uploads whose job is yet to come.
-    void sweep(const std::function<bool(const std::string& sha256)>& is_referenced) const;
+    // uploads whose job is yet to come. Returns how many.
+    std::size_t sweep(const std::function<bool(const std::string& sha256)>& is_referenced) const;
 
 private:
     std::filesystem::path path_of(const std::string& sha256) const;

@@ -13,14 +13,18 @@
 
 namespace leafcutter::server {
 
-class Database;
-
 struct CutProgress {
     std::int64_t lines_total = 0;
     std::int64_t lines_sent = 0;
     std::int64_t lines_acknowledged = 0;
     double burnt_mm = 0.0;  // Of a cut in work; not kept.
     double burn_mm = 0.0;
+};
+
+// Part of a job, for one machine.
+struct CutWish {
+    std::string device;
+    std::vector<int> sheets;  // In order; empty: those not cut yet, or all if every one is.
 };
 
 // The job can't be cut as wanted: not computed yet, or it has no such sheet.
@@ -31,58 +35,60 @@ public:
 
 class CutStore {
 public:
-    explicit CutStore(Database& database) : database_(database) {}
+    virtual ~CutStore() = default;
 
-    // Without `sheets`: those of the job not cut yet, or all if every one is. Throws NotCuttable.
-    CutRecord add(const std::string& job, const std::string& device, std::vector<int> sheets);
+    // A waiting cut for each wish, or none at all. Throws NotCuttable.
+    virtual std::vector<CutRecord> add(const std::string& job,
+                                       const std::vector<CutWish>& wishes) = 0;
 
-    std::optional<CutRecord> find(const std::string& id) const;
+    virtual std::optional<CutRecord> find(const std::string& id) const = 0;
 
     // Newest first.
-    std::vector<CutRecord> list(int limit) const;
+    virtual std::vector<CutRecord> list(int limit) const = 0;
 
     // The cuts of a device that are not over, in the order of its queue.
-    std::vector<CutRecord> open_on(const std::string& device) const;
+    virtual std::vector<CutRecord> open_on(const std::string& device) const = 0;
 
     // False if the cut is no longer in `from`. Throws std::logic_error if the table of states
     // forbids the move.
-    bool move(const std::string& id, CutState from, CutState to, const std::string& reason = {});
+    virtual bool move(const std::string& id,
+                      CutState from,
+                      CutState to,
+                      const std::string& reason = {}) = 0;
 
     // Waiting or awaiting a sheet -> armed, unless another cut occupies the device. The program
     // must be that of the current sheet.
-    bool arm(const CutRecord& cut);
+    virtual bool arm(const CutRecord& cut) = 0;
 
     // Armed -> cutting, with the intent to fire on disk: only after this may the beam come on.
-    bool begin_sheet(const CutRecord& cut);
+    virtual bool begin_sheet(const CutRecord& cut) = 0;
 
     // Cutting or paused -> awaiting the next sheet, or done; the sheet counts as cut, and the job
     // as done when all its sheets are.
-    bool finish_sheet(const CutRecord& cut, const CutProgress& progress);
+    virtual bool finish_sheet(const CutRecord& cut, const CutProgress& progress) = 0;
 
     // How far the beam got; no event.
-    void record_progress(const std::string& id, const CutProgress& progress);
+    virtual void record_progress(const std::string& id, const CutProgress& progress) = 0;
 
     // How far the beam of a cut that is over got.
-    void record_beam(const std::string& id, const BeamRecord& beam);
+    virtual void record_beam(const std::string& id, const BeamRecord& beam) = 0;
 
     // It ended early, and its rest is in nobody's hands.
-    bool may_be_finished(const CutRecord& cut) const;
+    virtual bool may_be_finished(const CutRecord& cut) const = 0;
 
     // A waiting cut of the rest: of the current sheet by that program, of the others whole. Nothing
     // if something else happened to `of` since it was read.
-    std::optional<CutRecord> add_rest(const CutRecord& of, const std::string& program_sha256);
+    virtual std::optional<CutRecord> add_rest(const CutRecord& of,
+                                              const std::string& program_sha256) = 0;
 
     // The cut that last had the beam of a device.
-    std::optional<CutRecord> last_begun_on(const std::string& device) const;
+    virtual std::optional<CutRecord> last_begun_on(const std::string& device) const = 0;
 
-    std::int64_t count(CutState state) const;
+    virtual std::int64_t count(CutState state) const = 0;
 
     // At start: armed cuts are disarmed, cuts in mid-beam are interrupted. Returns the devices of
     // the latter.
-    std::vector<std::string> recover();
-
-private:
-    Database& database_;
+    virtual std::vector<std::string> recover() = 0;
 };
 
 }  // namespace leafcutter::server

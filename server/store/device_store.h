@@ -10,19 +10,14 @@
 
 namespace leafcutter::server {
 
-class Database;
-
 class DeviceStore {
 public:
-    explicit DeviceStore(Database& database) : database_(database) {}
+    virtual ~DeviceStore() = default;
 
-    std::vector<DeviceRecord> list() const;
-    std::optional<DeviceRecord> find(const std::string& id) const;
-    void put(const DeviceRecord& device);
-    bool remove(const std::string& id);
-
-private:
-    Database& database_;
+    virtual std::vector<DeviceRecord> list() const = 0;
+    virtual std::optional<DeviceRecord> find(const std::string& id) const = 0;
+    virtual void put(const DeviceRecord& device) = 0;
+    virtual bool remove(const std::string& id) = 0;
 };
 
 }  // namespace leafcutter::server

@@ -1,34 +1,26 @@
 // The append-only log of what happened to jobs and cuts. A row is written in the transaction of the
-// change it tells of, so the numbers have no gaps.
+// change it tells of, so the numbers have no gaps; old ones may be let go from the front.
 
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "server/store/records.h"
 
-namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
-class Database;
-}
-
 namespace leafcutter::server {
-
-class Database;
-
-// Within a writer's transaction.
-void append_event(SQLite::Database& database, const EventRecord& event);
 
 class EventLog {
 public:
-    explicit EventLog(Database& database) : database_(database) {}
+    virtual ~EventLog() = default;
 
-    std::int64_t last_seq() const;
-    std::vector<EventRecord> after(std::int64_t seq, int limit) const;
+    // Of the oldest and the newest one kept; 0 and the last ever given if there is none.
+    virtual std::int64_t first_seq() const = 0;
+    virtual std::int64_t last_seq() const = 0;
+    virtual std::vector<EventRecord> after(std::int64_t seq, int limit) const = 0;
 
-private:
-    Database& database_;
+    // Lets go of at most `limit` events older than `before_ms`. Returns how many.
+    virtual int forget(std::int64_t before_ms, int limit) = 0;
 };
 
 }  // namespace leafcutter::server

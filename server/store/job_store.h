@@ -12,13 +12,7 @@
 
 #include "server/store/records.h"
 
-namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
-class Database;
-}
-
 namespace leafcutter::server {
-
-class Database;
 
 struct NewJob {
     std::string name;
@@ -45,6 +39,7 @@ struct AddedJob {
 
 struct JobQuery {
     std::optional<JobState> state;
+    bool dead_letters = false;  // Only those that gave up on their own: see JobStore::crashed().
     int limit = 50;
     std::optional<std::int64_t> below_ordinal;  // Where the page before ended.
 };
@@ -58,51 +53,91 @@ struct ComputedJob {
 
 enum class Removal { Removed, NotThere, StillInUse };
 
+// How many jobs wait, run and gave up.
+struct QueueCounts {
+    std::int64_t queued = 0;
+    std::int64_t computing = 0;
+    std::int64_t dead_letters = 0;
+};
+
 class JobStore {
 public:
     static constexpr int kMostAttempts = 3;
+    static constexpr int kMostPriority = 1000;  // And as far below zero.
 
-    explicit JobStore(Database& database) : database_(database) {}
+    virtual ~JobStore() = default;
 
     // Throws KeyReused.
-    AddedJob add(const NewJob& job, const std::optional<IdempotencyKey>& key);
+    virtual AddedJob add(const NewJob& job, const std::optional<IdempotencyKey>& key) = 0;
 
     // A job that never waits: pieces of `recut_of` again, computed already.
-    JobRecord add_ready(const NewJob& job, const std::string& recut_of, const ComputedJob& result);
+    virtual JobRecord add_ready(const NewJob& job,
+                                const std::string& recut_of,
+                                const ComputedJob& result) = 0;
 
-    std::optional<JobRecord> find(const std::string& id) const;
+    virtual std::optional<JobRecord> find(const std::string& id) const = 0;
 
     // Newest first.
-    std::vector<JobRecord> list(const JobQuery& query) const;
+    virtual std::vector<JobRecord> list(const JobQuery& query) const = 0;
 
-    // The oldest queued job becomes computing; nothing if none is queued.
-    std::optional<JobRecord> claim();
+    // The first `limit` of those that wait, in the order in which they will be claimed.
+    virtual std::vector<JobRecord> queue(int limit) const = 0;
+    virtual QueueCounts queue_counts() const = 0;
+
+    // The first job of the queue becomes computing: that of the highest priority, and of these the
+    // one in front. Nothing if none is queued, or the queue is paused.
+    virtual std::optional<JobRecord> claim() = 0;
+
+    // A paused queue lets nobody claim; what is computing goes on. The reason is for people.
+    virtual void pause_queue(const std::string& reason) = 0;
+    virtual void resume_queue() = 0;
+
+    // Why the queue is paused; nothing: it is not.
+    virtual std::optional<std::string> queue_pause() const = 0;
+
+    // Of a job in any state; it goes behind all others of its new priority. False: not there.
+    virtual bool set_priority(const std::string& id, int priority) = 0;
+
+    // To that place of the queue, from 1, and to the priority of the job that stood there; past the
+    // end means last. False if the job is not queued.
+    virtual bool move_to(const std::string& id, int position) = 0;
+
+    // False: not there.
+    virtual bool rename(const std::string& id, const std::string& name) = 0;
+
+    // From failed or cancelled back to the queue's end, with its attempts forgotten. `cause` says
+    // what has changed since. False if it is in neither state.
+    virtual bool retry(const std::string& id, const std::string& cause) = 0;
 
     // From computing. False: it is no longer computing (cancelled meanwhile), nothing was done.
-    bool finish(const std::string& id, const ComputedJob& result);
-    bool fail(const std::string& id, const JobFailure& failure);
-    bool requeue(const std::string& id);
+    virtual bool finish(const std::string& id, const ComputedJob& result) = 0;
+    virtual bool fail(const std::string& id, const JobFailure& failure) = 0;
+    virtual bool requeue(const std::string& id) = 0;
+
+    // The computation broke the process that ran it. Back to the queue, or after kMostAttempts
+    // failed for good ("poison-job"): a dead letter. False: it is no longer computing.
+    virtual bool crashed(const std::string& id, const std::string& how) = 0;
 
     // From queued or computing.
-    bool cancel(const std::string& id);
+    virtual bool cancel(const std::string& id) = 0;
 
     // Any job that is neither queued nor computing and has no cut under way.
-    Removal remove(const std::string& id);
+    virtual Removal remove(const std::string& id) = 0;
 
-    std::vector<ArtifactRecord> artifacts(const std::string& job) const;
-    std::optional<ArtifactRecord> artifact(const std::string& job, const std::string& path) const;
-    bool refers_to_blob(const std::string& sha256) const;
-    std::int64_t count(JobState state) const;
+    virtual std::vector<ArtifactRecord> artifacts(const std::string& job) const = 0;
+    virtual std::optional<ArtifactRecord> artifact(const std::string& job,
+                                                   const std::string& path) const = 0;
+    virtual bool refers_to_blob(const std::string& sha256) const = 0;
+
+    // Of jobs that ended before `before_ms` and have no cut under way, at most `limit`. Returns how
+    // many: those removed with all their rows, or those whose package was let go.
+    virtual int remove_finished(std::int64_t before_ms, int limit) = 0;
+    virtual int drop_packages(std::int64_t before_ms, int limit) = 0;
+
+    virtual std::int64_t count(JobState state) const = 0;
 
     // At start: what was computing goes back to the queue, or fails after kMostAttempts.
-    void recover();
-
-private:
-    Database& database_;
+    virtual void recover() = 0;
 };
-
-// Within a transaction: throws std::logic_error if the table of states forbids the move; false if
-// the job is not in `from`.
-bool move_job(SQLite::Database& database, const std::string& id, JobState from, JobState to);
 
 }  // namespace leafcutter::server

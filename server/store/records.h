@@ -32,6 +32,9 @@ struct SheetRecord {
     std::string program_sha256;  // Of the G-code; empty if the sheet has none.
     double estimated_s = 0.0;
     bool cut = false;
+    std::array<double, 2> size_mm = {};  // 0: not known.
+    std::string stock = {};        // The entry of the stock it was planned on; empty: a new one.
+    std::string offcut_json = {};  // What it leaves, as a record of stock; empty: nothing.
 };
 
 struct ArtifactRecord {
@@ -52,10 +55,14 @@ struct JobRecord {
     SourceFile file;
     std::string params_json = "{}";
     int attempt = 0;
+    int priority = 0;  // The highest goes first.
+    int retries = 0;
+    std::string retry_cause;  // Of the last retry.
     std::optional<JobFailure> failure;
     std::optional<std::string> summary_json;
     std::vector<SheetRecord> sheets;
     std::vector<std::string> cuts;
+    bool has_open_cut = false;
     std::string recut_of;  // The job whose pieces it cuts again; empty: none.
 };
 
@@ -98,6 +105,20 @@ struct CutRecord {
     CutState before_arming() const {
         return position > 0 ? CutState::AwaitingSheet : CutState::Waiting;
     }
+};
+
+// Sheets of one kind at hand, or one remnant.
+struct StockRecord {
+    std::string id;
+    std::string json;             // As job parameters take an entry of nesting.stock.
+    std::string material;         // Empty: whichever is asked for.
+    std::optional<int> quantity;  // None: as many as wanted.
+    std::string note;
+    std::string from_job;  // Whose sheet left it; empty: somebody put it there.
+    int from_sheet = 0;
+    std::int64_t created_ms = 0;
+    std::int64_t updated_ms = 0;
+    int planned = 0;  // Of these, so many are in the plans of jobs that are ready, not cut yet.
 };
 
 struct DeviceRecord {

@@ -9,6 +9,8 @@ import sys
 import time
 from pathlib import Path
 
+from api_schema import problem_of
+
 BINARY = sys.argv.pop(1) if len(sys.argv) > 1 else "build/release/leafcutter"
 SQUARE = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"
 
@@ -20,10 +22,10 @@ def free_port():
 
 
 class Daemon:
-    def __init__(self, state, port):
+    def __init__(self, state, port, *options, address="127.0.0.1"):
         self.port = port
         self.process = subprocess.Popen(
-            [BINARY, "serve", "--state", str(state), "--listen", f"127.0.0.1:{port}"],
+            [BINARY, "serve", "--state", str(state), "--listen", f"{address}:{port}", *options],
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         line = self.process.stdout.readline()
         if "http://" not in line:
@@ -34,7 +36,11 @@ class Daemon:
         try:
             connection.request(method, path, body, headers or {})
             answer = connection.getresponse()
-            return answer.status, answer.headers, answer.read()
+            content = answer.read()
+            problem = problem_of(method, path, answer.status, answer.headers, content)
+            if problem:
+                raise AssertionError(problem)
+            return answer.status, answer.headers, content
         finally:
             connection.close()
 

@@ -182,7 +182,7 @@ protected:
             result.sheets.push_back({number, "paper", blob(text), 1.0, false});
         }
         EXPECT_TRUE(store->jobs.finish(job.id, result));
-        return store->cuts.add(job.id, record.id, {});
+        return store->cuts.add(job.id, {{record.id, {}}}).front();
     }
     void arm(const CutRecord& cut) {
         EXPECT_TRUE(store->cuts.arm(store->cuts.find(cut.id).value()));

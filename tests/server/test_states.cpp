@@ -34,9 +34,10 @@ TEST(CutStates, NamesGoThereAndBack) {
     EXPECT_FALSE(cut_state_named("burning"));
 }
 
-TEST(JobStates, AFailedJobStaysFailed) {
-    for (const JobState to :
-         {JobState::Queued, JobState::Computing, JobState::Ready, JobState::Done}) {
+TEST(JobStates, AFailedJobLeavesThatStateOnlyByAnotherTry) {
+    EXPECT_TRUE(may_follow(JobState::Failed, JobState::Queued));
+    EXPECT_TRUE(may_follow(JobState::Cancelled, JobState::Queued));
+    for (const JobState to : {JobState::Computing, JobState::Ready, JobState::Done}) {
         EXPECT_FALSE(may_follow(JobState::Failed, to)) << to_string(to);
         EXPECT_FALSE(may_follow(JobState::Cancelled, to)) << to_string(to);
     }

@@ -1,14 +1,14 @@
-#include <atomic>
+// The state folder: locked, looked through, rescued; and its files.
+
 #include <fstream>
-#include <set>
 #include <stdexcept>
-#include <thread>
-#include <vector>
 
 #include <gtest/gtest.h>
 
-#include "server/store/schema.h"
+#include "server/store/sqlite/database.h"
+#include "server/store/sqlite/events.h"
 #include "server/store/store.h"
+#include "server/store/store_error.h"
 #include "tests/support/temp_dir.h"
 
 namespace leafcutter::server {
@@ -21,34 +21,32 @@ protected:
     void open() {
         store = std::make_unique<Store>(folder.path(), [] {});
     }
-    void reopen() {
+
+    std::string add(const std::string& name = "head.obj") {
+        return store->jobs.add({name, {name, 3, sha256_of("abc")}, "{}"}, std::nullopt).job.id;
+    }
+
+    // The head of every page but the first is something else.
+    void damage() {
         store.reset();
-        open();
-    }
-
-    JobRecord add(const std::string& name = "head.obj") {
-        return store->jobs.add({name, {name, 3, sha256_of("abc")}, "{}"}, std::nullopt).job;
-    }
-
-    JobRecord add_ready(int sheets) {
-        const JobRecord job = add();
-        store->jobs.claim();
-        ComputedJob result;
-        result.summary_json = "{}";
-        for (int number = 1; number <= sheets; ++number) {
-            const std::string program = sha256_of(std::to_string(number));
-            result.sheets.push_back({number, "paper", program, 1.0, false});
+        std::fstream file(folder.path() / "leafcutter.db",
+                          std::ios::binary | std::ios::in | std::ios::out);
+        file.seekg(0, std::ios::end);
+        const auto size = static_cast<long>(file.tellg());
+        for (long at = 4096; at < size; at += 4096) {
+            file.seekp(at);
+            file << std::string(500, 'x');
         }
-        EXPECT_TRUE(store->jobs.finish(job.id, result));
-        return store->jobs.find(job.id).value();
     }
 
-    CutRecord armed(const CutRecord& cut) {
-        EXPECT_TRUE(store->cuts.arm(cut));
-        return store->cuts.find(cut.id).value();
+    std::size_t put_aside() const {
+        std::size_t found = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+            found +=
+                entry.path().filename().string().find(".corrupt-") != std::string::npos ? 1 : 0;
+        }
+        return found;
     }
-
-    CutState state_of(const CutRecord& cut) { return store->cuts.find(cut.id)->state; }
 
     test::TempDir folder;
     std::unique_ptr<Store> store;
@@ -58,171 +56,72 @@ TEST_F(StoreTest, ASecondDaemonIsRefusedTheFolder) {
     EXPECT_THROW(Store(folder.path(), [] {}), StateDirUnusable);
 }
 
-TEST_F(StoreTest, RefusesADamagedDatabase) {
-    add();
+TEST_F(StoreTest, ADamagedDatabaseIsPutAsideForTheNewestGoodBackup) {
+    const std::string kept = add();
+    store->back_up(5);
+    const std::string lost = add();
+    damage();
+    // The newest one is no good.
+    std::ofstream(folder.path() / "backups" / "9999-never.db") << std::string(8192, 'x');
+    open();
+    EXPECT_EQ(store->trouble(), "");
+    EXPECT_NE(store->notice(), "");
+    EXPECT_TRUE(store->jobs.find(kept));
+    EXPECT_FALSE(store->jobs.find(lost));
+    EXPECT_EQ(put_aside(), 1U);
+    // Nothing of a time gone by begins by itself.
+    EXPECT_TRUE(store->jobs.queue_pause());
     store.reset();
-    std::ofstream(folder.path() / "leafcutter.db", std::ios::binary) << std::string(8192, 'x');
-    EXPECT_THROW(open(), DatabaseUnusable);
+    open();
+    EXPECT_EQ(store->notice(), "");
 }
 
-TEST_F(StoreTest, JobsAreClaimedOldestFirstAndOnce) {
-    const JobRecord first = add();
-    const JobRecord second = add();
-    EXPECT_EQ(store->jobs.claim()->id, first.id);
-    EXPECT_EQ(store->jobs.claim()->id, second.id);
-    EXPECT_FALSE(store->jobs.claim());
+TEST_F(StoreTest, WithoutAnyBackupItOnlyReads) {
+    add();
+    damage();
+    open();
+    EXPECT_NE(store->trouble(), "");
+    EXPECT_THROW(add(), StoreError);
+    EXPECT_EQ(put_aside(), 0U);
+    store.reset();
+    open();  // However often it is started.
+    EXPECT_NE(store->trouble(), "");
 }
 
-TEST_F(StoreTest, ManyClaimersNeverShareAJob) {
-    constexpr int kJobs = 40;
-    for (int i = 0; i < kJobs; ++i) {
-        add();
+TEST_F(StoreTest, AFileThatIsNoDatabaseIsNotWrittenOver) {
+    store.reset();
+    const std::string text(20000, 'x');
+    std::ofstream(folder.path() / "leafcutter.db", std::ios::binary) << text;
+    open();
+    EXPECT_NE(store->trouble(), "");
+    try {
+        store->jobs.list({});
+        FAIL();
+    } catch (const StoreError& error) {
+        EXPECT_EQ(error.trouble(), StoreTrouble::Damaged);
     }
-    std::mutex mutex;
-    std::set<std::string> claimed;
-    std::atomic<int> count{0};
-    {
-        std::vector<std::jthread> claimers;
-        for (int i = 0; i < 4; ++i) {
-            claimers.emplace_back([&] {
-                while (const auto job = store->jobs.claim()) {
-                    const std::scoped_lock lock(mutex);
-                    claimed.insert(job->id);
-                    ++count;
-                }
-            });
-        }
+    store.reset();
+    EXPECT_EQ(std::filesystem::file_size(folder.path() / "leafcutter.db"), text.size());
+}
+
+TEST_F(StoreTest, OnlyTheNewestBackupsAreKept) {
+    for (int i = 0; i < 4; ++i) {
+        store->back_up(2);
     }
-    EXPECT_EQ(count, kJobs);
-    EXPECT_EQ(claimed.size(), static_cast<std::size_t>(kJobs));
+    EXPECT_EQ(store->list_backups().size(), 2U);
 }
 
-TEST_F(StoreTest, TheSameKeyGivesTheSameJob) {
-    const NewJob job{"n", {"n.obj", 3, sha256_of("abc")}, "{}"};
-    const AddedJob first = store->jobs.add(job, IdempotencyKey{"k", "hash"});
-    const AddedJob again = store->jobs.add(job, IdempotencyKey{"k", "hash"});
-    EXPECT_FALSE(first.replayed);
-    EXPECT_TRUE(again.replayed);
-    EXPECT_EQ(first.job.id, again.job.id);
-    EXPECT_THROW(store->jobs.add(job, IdempotencyKey{"k", "other"}), KeyReused);
-    EXPECT_EQ(store->jobs.list({}).size(), 1U);
-}
-
-TEST_F(StoreTest, AJobCutShortGoesBackToTheQueueAndFailsInTheEnd) {
-    const JobRecord job = add();
-    for (int attempt = 1; attempt <= JobStore::kMostAttempts; ++attempt) {
-        ASSERT_EQ(store->jobs.claim()->attempt, attempt);
-        reopen();
-    }
-    const JobRecord last = store->jobs.find(job.id).value();
-    EXPECT_EQ(last.state, JobState::Failed);
-    EXPECT_EQ(last.failure->code, "poison-job");
-}
-
-TEST_F(StoreTest, AResultForACancelledJobIsDropped) {
-    const JobRecord job = add();
-    store->jobs.claim();
-    EXPECT_TRUE(store->jobs.cancel(job.id));
-    EXPECT_FALSE(store->jobs.finish(job.id, {}));
-    EXPECT_EQ(store->jobs.find(job.id)->state, JobState::Cancelled);
-}
-
-TEST_F(StoreTest, EventNumbersHaveNoGapAndEveryChangeHasOne) {
-    const JobRecord job = add();
-    store->jobs.claim();
-    store->jobs.fail(job.id, {"bad-file", "x", "y"});
-    store->jobs.remove(job.id);
-    const auto events = store->events.after(0, 100);
-    ASSERT_EQ(events.size(), 4U);
-    for (std::size_t i = 0; i < events.size(); ++i) {
-        EXPECT_EQ(events[i].seq, static_cast<std::int64_t>(i) + 1);
-    }
-    EXPECT_EQ(events[2].note, "computing -> failed");
-}
-
-TEST_F(StoreTest, WorkThatThrowsLeavesNothingBehind) {
-    const auto write = [this] {
-        store->database.write([](SQLite::Database& database) {
-            EventRecord event;
-            append_event(database, event);
+TEST(Database, WorkThatThrowsLeavesNothingBehind) {
+    const test::TempDir folder;
+    Database database(folder.path() / "a.db", [] {});
+    const auto write = [&database] {
+        database.write([](SQLite::Database& connection) {
+            append_event(connection, {});
             throw std::runtime_error("no");
         });
     };
     EXPECT_THROW(write(), std::runtime_error);
-    EXPECT_EQ(store->events.last_seq(), 0);
-}
-
-TEST_F(StoreTest, AJobIsDoneWhenItsLastSheetIsCut) {
-    const JobRecord job = add_ready(2);
-    CutRecord cut = store->cuts.add(job.id, "sim", {});
-    EXPECT_EQ(cut.sheets, (std::vector<int>{1, 2}));
-    cut = armed(cut);
-    ASSERT_TRUE(store->cuts.begin_sheet(cut));
-    ASSERT_TRUE(store->cuts.finish_sheet(cut, {}));
-    cut = store->cuts.find(cut.id).value();
-    EXPECT_EQ(cut.state, CutState::AwaitingSheet);
-    EXPECT_EQ(cut.sheet(), 2);
-    EXPECT_EQ(cut.program_sha256, sha256_of("2"));
-    EXPECT_EQ(store->jobs.find(job.id)->state, JobState::Ready);
-    cut = armed(cut);
-    ASSERT_TRUE(store->cuts.begin_sheet(cut));
-    ASSERT_TRUE(store->cuts.finish_sheet(cut, {}));
-    EXPECT_EQ(state_of(cut), CutState::Done);
-    EXPECT_EQ(store->jobs.find(job.id)->state, JobState::Done);
-}
-
-TEST_F(StoreTest, OnlyOneCutOccupiesADevice) {
-    const JobRecord job = add_ready(1);
-    const CutRecord first = store->cuts.add(job.id, "sim", {});
-    const CutRecord second = store->cuts.add(job.id, "sim", {});
-    armed(first);
-    EXPECT_FALSE(store->cuts.arm(second));
-    EXPECT_EQ(state_of(second), CutState::Waiting);
-}
-
-TEST_F(StoreTest, ASheetBeginsOncePerArming) {
-    const CutRecord cut = armed(store->cuts.add(add_ready(1).id, "sim", {}));
-    EXPECT_TRUE(store->cuts.begin_sheet(cut));
-    EXPECT_FALSE(store->cuts.begin_sheet(cut));
-}
-
-TEST_F(StoreTest, ACutInMidBeamIsInterruptedAndAnArmedOneDisarmedByARestart) {
-    const JobRecord job = add_ready(1);
-    const CutRecord burning = armed(store->cuts.add(job.id, "one", {}));
-    store->cuts.begin_sheet(burning);
-    store->cuts.record_progress(burning.id, {100, 40, 30});
-    const CutRecord waiting = armed(store->cuts.add(job.id, "two", {}));
-    reopen();
-    EXPECT_EQ(state_of(burning), CutState::Interrupted);
-    EXPECT_EQ(state_of(waiting), CutState::Waiting);
-    EXPECT_EQ(store->interrupted_devices, (std::vector<std::string>{"one"}));
-    EXPECT_NE(store->cuts.find(burning.id)->reason.find("30 of 100"), std::string::npos);
-}
-
-TEST_F(StoreTest, AJobWithACutUnderWayStays) {
-    const JobRecord job = add_ready(1);
-    const CutRecord cut = store->cuts.add(job.id, "sim", {});
-    EXPECT_EQ(store->jobs.remove(job.id), Removal::StillInUse);
-    store->cuts.move(cut.id, CutState::Waiting, CutState::Aborted);
-    EXPECT_EQ(store->jobs.remove(job.id), Removal::Removed);
-    EXPECT_EQ(store->jobs.remove(job.id), Removal::NotThere);
-}
-
-TEST_F(StoreTest, RefusesSheetsThatAreNotThere) {
-    EXPECT_THROW(store->cuts.add(add_ready(1).id, "sim", {2}), NotCuttable);
-    EXPECT_THROW(store->cuts.add(add().id, "sim", {}), NotCuttable);
-}
-
-TEST_F(StoreTest, AMoveThatTheTableForbidsIsAMistakeOfOurs) {
-    const CutRecord cut = store->cuts.add(add_ready(1).id, "sim", {});
-    EXPECT_THROW(store->cuts.move(cut.id, CutState::Waiting, CutState::Cutting), std::logic_error);
-}
-
-TEST_F(StoreTest, AFreshFolderHasASimulatedMachine) {
-    const auto device = store->devices.find("sim");
-    ASSERT_TRUE(device);
-    EXPECT_EQ(device->uri, "sim:grbl");
-    EXPECT_FALSE(device->auto_start);
+    EXPECT_EQ(SqliteEventLog(database).last_seq(), 0);
 }
 
 TEST(Blobs, KeepWhatIsFinishedAndNothingElse) {

@@ -8,10 +8,11 @@ import { fileURLToPath } from 'node:url';
 const source = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../src');
 const mayImport = {
   lib: ['lib'],
+  mesh: ['mesh'],
   messages: ['messages', 'lib'],
   api: ['api', 'lib'],
-  state: ['state', 'api', 'lib', 'messages'],
-  view: ['view', 'state', 'api', 'lib', 'messages'],
+  state: ['state', 'mesh', 'api', 'lib', 'messages'],
+  view: ['view', 'state', 'mesh', 'api', 'lib', 'messages'],
 };
 
 function modules(folder) {

@@ -9,6 +9,7 @@
 #include "server/http/api/handlers.h"
 #include "server/http/api/lookup.h"
 #include "server/http/api/views.h"
+#include "server/http/guard.h"
 #include "server/http/json_body.h"
 #include "server/http/problem.h"
 
@@ -165,7 +166,11 @@ Response create_cut(App& app, Request& request) {
     if (!runner) {
         throw HttpProblem(422, "no-such-device", "device: there is no machine of that id");
     }
-    const CutRecord cut = app.store().cuts.add(job.id, runner->record().id, sheets_in(body));
+    if (runner->record().auto_start) {
+        admit(request, Role::Operator, Beam::MayFire);
+    }
+    const CutRecord cut =
+        app.store().cuts.add(job.id, {{runner->record().id, sheets_in(body)}}).front();
     runner->wake();
     Response response = json_response(cut_json(app, cut), 201);
     response.headers["Location"] = "/api/v1/cuts/" + cut.id;
@@ -236,6 +241,7 @@ Response abort_cut(App& app, Request& request) {
         if (runner && runner->abort(cut.id)) {
             return json_response(cut_json(app, cut), 202);
         }
+        admit(request, Role::Operator, Beam::Off);  // Anybody may stop a beam, not empty a queue.
         if (!may_follow(cut.state, CutState::Aborted)) {
             throw not_now(cut, "abort");
         }

@@ -17,6 +17,13 @@ Response delete_job(App& app, Request& request);
 Response recompute_job(App& app, Request& request);
 Response put_blob(App& app, Request& request);
 
+// queue.cpp
+Response show_queue(App& app, Request& request);
+Response pause_queue(App& app, Request& request);
+Response resume_queue(App& app, Request& request);
+Response change_job(App& app, Request& request);
+Response retry_job(App& app, Request& request);
+
 // recut.cpp
 Response recut_job(App& app, Request& request);
 
@@ -50,6 +57,47 @@ Response list_materials(App& app, Request& request);
 Response show_material(App& app, Request& request);
 Response put_material(App& app, Request& request);
 Response delete_material(App& app, Request& request);
+Response import_materials(App& app, Request& request);
+
+// stock.cpp
+Response list_stock(App& app, Request& request);
+Response import_stock(App& app, Request& request);
+Response show_stock(App& app, Request& request);
+Response put_stock(App& app, Request& request);
+Response delete_stock(App& app, Request& request);
+
+// presets.cpp
+Response list_presets(App& app, Request& request);
+Response import_presets(App& app, Request& request);
+Response show_preset(App& app, Request& request);
+Response put_preset(App& app, Request& request);
+Response delete_preset(App& app, Request& request);
+
+// storage.cpp
+Response show_retention(App& app, Request& request);
+Response change_retention(App& app, Request& request);
+Response list_backups(App& app, Request& request);
+Response make_backup(App& app, Request& request);
+
+// session.cpp
+Response show_session(App& app, Request& request);
+Response log_in(App& app, Request& request);
+Response log_out(App& app, Request& request);
+
+// accounts.cpp
+Response list_users(App& app, Request& request);
+Response add_user(App& app, Request& request);
+Response show_user(App& app, Request& request);
+Response change_user(App& app, Request& request);
+Response delete_user(App& app, Request& request);
+Response list_keys(App& app, Request& request);
+Response add_key(App& app, Request& request);
+Response delete_key(App& app, Request& request);
+Response list_audit(App& app, Request& request);
+
+// octoprint.cpp
+Response octoprint_version(App& app, Request& request);
+Response octoprint_upload(App& app, Request& request);
 
 // events.cpp
 Response stream_events(App& app, Request& request);

@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "server/app.h"
 #include "server/http/api/handlers.h"
+#include "server/http/api/job_intake.h"
 #include "server/http/api/lookup.h"
 #include "server/http/api/views.h"
 #include "server/http/json_body.h"
 #include "server/http/multipart.h"
 #include "server/http/problem.h"
+#include "server/stock_choice.h"
 
 namespace leafcutter::server {
 
@@ -22,23 +23,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kLongestName = 200;
-
-void check_room(App& app, std::int64_t bytes) {
-    if (!app.store().blobs.has_room_for(bytes)) {
-        throw HttpProblem(507, "disk", "there is no room for this file");
-    }
-}
-
-// Streams the current part into the blob store.
-SourceFile store_mesh(App& app, MultipartReader& parts, const PartHead& head) {
-    const std::unique_ptr<BlobWriter> writer = app.store().blobs.begin();
-    std::array<char, 65536> piece;
-    while (const std::size_t size = parts.read(piece)) {
-        writer->write({piece.data(), size});
-    }
-    const BlobId blob = writer->finish();
-    return {head.file_name, blob.bytes, blob.sha256};
-}
 
 NewJob job_from_form(App& app, const Request& request) {
     check_room(app, request.body.bytes);
@@ -62,21 +46,10 @@ NewJob job_from_form(App& app, const Request& request) {
     return job;
 }
 
-std::string text_at(const json& body, const char* key, const std::string& otherwise) {
-    const auto found = body.find(key);
-    if (found == body.end()) {
-        return otherwise;
-    }
-    if (!found->is_string()) {
-        throw HttpProblem(422, "bad-field", fmt::format("{}: must be a string", key));
-    }
-    return found->get<std::string>();
-}
-
 NewJob job_from_json(App& app, const Request& request) {
     const json body = read_json_object(request);
     NewJob job;
-    job.file.sha256 = text_at(body, "blob", "");
+    job.file.sha256 = text_field_or(body, "blob", "");
     const auto bytes =
         is_sha256(job.file.sha256) ? app.store().blobs.size(job.file.sha256) : std::nullopt;
     if (!bytes) {
@@ -84,16 +57,19 @@ NewJob job_from_json(App& app, const Request& request) {
                           "blob: there is none of that name; PUT it to /blobs first");
     }
     job.file.bytes = *bytes;
-    job.name = text_at(body, "name", "");
-    job.file.name = text_at(body, "file_name", job.name);
+    job.name = text_field_or(body, "name", "");
+    job.file.name = text_field_or(body, "file_name", job.name);
     job.params_json = dump_json(body.value("params", json::object()));
     return job;
 }
 
 // Parameters are refused before any work starts; what is kept is what was given.
 void check_params(App& app, NewJob& job) {
-    job.params_json = dump_json(parse_json(job.params_json));
-    app.parts().check_params(job.params_json);
+    const json params = parse_json(job.params_json);
+    job.params_json = dump_json(params);
+    app.parts().check_params(names_stock(params)
+                                 ? dump_json(with_stock(params, app.store().stock.list()))
+                                 : job.params_json);
 }
 
 std::optional<IdempotencyKey> key_of(const Request& request, const NewJob& job) {
@@ -102,10 +78,36 @@ std::optional<IdempotencyKey> key_of(const Request& request, const NewJob& job) 
         return std::nullopt;
     }
     return IdempotencyKey{
-        *key, sha256_of(fmt::format("{}\n{}\n{}", job.file.sha256, job.name, job.params_json))};
+        fmt::format("{}/{}", request.caller.name, *key),
+        sha256_of(fmt::format("{}\n{}\n{}", job.file.sha256, job.name, job.params_json))};
 }
 
 Response accept(App& app, const Request& request, NewJob job) {
+    const AddedJob added = take_job(app, request, std::move(job));
+    Response response = json_response(job_json(app, added.job), 201);
+    response.headers["Location"] = "/api/v1/jobs/" + added.job.id;
+    return response;
+}
+
+}  // namespace
+
+void check_room(App& app, std::int64_t bytes) {
+    if (!app.store().blobs.has_room_for(bytes)) {
+        throw HttpProblem(507, "disk", "there is no room for this file");
+    }
+}
+
+SourceFile store_mesh(App& app, MultipartReader& parts, const PartHead& head) {
+    const std::unique_ptr<BlobWriter> writer = app.store().blobs.begin();
+    std::array<char, 65536> piece;
+    while (const std::size_t size = parts.read(piece)) {
+        writer->write({piece.data(), size});
+    }
+    const BlobId blob = writer->finish();
+    return {head.file_name, blob.bytes, blob.sha256};
+}
+
+AddedJob take_job(App& app, const Request& request, NewJob job) {
     check_params(app, job);
     job.name = job.name.empty() ? job.file.name : job.name;
     job.name.resize(std::min(job.name.size(), kLongestName));
@@ -113,26 +115,8 @@ Response accept(App& app, const Request& request, NewJob job) {
     if (!added.replayed) {
         app.compute().wake();
     }
-    Response response = json_response(job_json(app, added.job), 201);
-    response.headers["Location"] = "/api/v1/jobs/" + added.job.id;
-    return response;
+    return added;
 }
-
-std::int64_t number_in(const Request& request, const char* name, std::int64_t otherwise) {
-    const auto found = request.query.find(name);
-    if (found == request.query.end()) {
-        return otherwise;
-    }
-    std::int64_t number = 0;
-    const char* end = found->second.data() + found->second.size();
-    const auto parsed = std::from_chars(found->second.data(), end, number);
-    if (parsed.ec != std::errc() || parsed.ptr != end || number < 0) {
-        throw HttpProblem(400, "bad-query", fmt::format("{}: must be a whole number", name));
-    }
-    return number;
-}
-
-}  // namespace
 
 Response create_job(App& app, Request& request) {
     const std::string type = request.header("content-type").value_or("");
@@ -143,25 +127,23 @@ Response create_job(App& app, Request& request) {
 
 Response list_jobs(App& app, Request& request) {
     JobQuery query;
-    constexpr std::int64_t kMost = 200;
-    query.limit =
-        static_cast<int>(std::clamp<std::int64_t>(number_in(request, "limit", 50), 1, kMost));
+    const Page page = page_in(request);
+    query.limit = page.limit;
+    query.below_ordinal = page.cursor;
     if (const auto state = request.query.find("state"); state != request.query.end()) {
         query.state = job_state_named(state->second);
         if (!query.state) {
             throw HttpProblem(400, "bad-query", "state: there is no such state");
         }
     }
-    if (request.query.count("cursor") != 0) {
-        query.below_ordinal = number_in(request, "cursor", 0);
-    }
+    query.dead_letters = request.query.count("dead_letters") != 0;
     json jobs = json::array();
-    const std::vector<JobRecord> page = app.store().jobs.list(query);
-    for (const JobRecord& job : page) {
+    const std::vector<JobRecord> records = app.store().jobs.list(query);
+    for (const JobRecord& job : records) {
         jobs.push_back(job_json(app, job));
     }
-    const bool full = static_cast<int>(page.size()) == query.limit;
-    const json cursor = full ? json(std::to_string(page.back().ordinal)) : json();
+    const bool full = static_cast<int>(records.size()) == query.limit;
+    const json cursor = full ? json(std::to_string(records.back().ordinal)) : json();
     return json_response({{"jobs", jobs}, {"next_cursor", cursor}});
 }
 
@@ -189,7 +171,7 @@ Response recompute_job(App& app, Request& request) {
     const auto params = body.find("params");
     NewJob job;
     job.file = old.file;
-    job.name = text_at(body, "name", old.name);
+    job.name = text_field_or(body, "name", old.name);
     job.params_json = params == body.end() ? old.params_json : dump_json(*params);
     return accept(app, request, std::move(job));
 }

@@ -27,7 +27,7 @@ struct Shelf {
 
 Shelf shelf_of(App& app) {
     Shelf shelf;
-    shelf.stored = materials_from_records(app.store().materials.records());
+    shelf.stored = materials_from_records(texts_of(app.store().materials.list()));
     shelf.all = with_materials(fab::built_in_materials(), shelf.stored);
     return shelf;
 }
@@ -73,9 +73,35 @@ Response put_material(App& app, Request& request) {
         throw HttpProblem(422, "bad-field", "id: must be the one of the address, or be left out");
     }
     const fab::Material material = material_from_json(body, "", shelf_of(app).all);
-    const bool is_new = app.store().materials.put(id, dump_json(material_to_json(material)));
+    const bool is_new = app.store().materials.put({id, dump_json(material_to_json(material))});
     const bool built_in = fab::find_material(fab::built_in_materials(), id) != nullptr;
     return json_response(view_of(shelf_of(app), id), is_new && !built_in ? 201 : 200);
+}
+
+Response import_materials(App& app, Request& request) {
+    const json body = parse_json(read_body(request, kMostBulkBytes));
+    const auto list = body.is_object() ? body.find("materials") : body.end();
+    if (list == body.end() || !list->is_array()) {
+        throw HttpProblem(422, "bad-field",
+                          "materials: must be a list, as GET /materials shows it");
+    }
+    const Shelf shelf = shelf_of(app);
+    std::vector<NamedRecord> records;
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        json entry = (*list)[i];
+        if (!entry.is_object()) {
+            throw HttpProblem(422, "bad-field", fmt::format("materials[{}]: must be an object", i));
+        }
+        if (entry.value("origin", "") == "built-in") {
+            continue;  // As shown: everybody has it.
+        }
+        entry.erase("origin");
+        const fab::Material material =
+            material_from_json(entry, fmt::format("materials[{}]", i), shelf.all);
+        records.push_back({material.id, dump_json(material_to_json(material))});
+    }
+    app.store().materials.put_all(records);
+    return list_materials(app, request);
 }
 
 Response delete_material(App& app, Request& request) {

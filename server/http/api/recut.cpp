@@ -63,7 +63,7 @@ Response recut_job(App& app, Request& request) {
     RecutCall call;
     call.job_name = job.name;
     call.wishes_json = dump_json(body);
-    call.material_records = app.store().materials.records();
+    call.material_records = texts_of(app.store().materials.list());
     call.read = [&app, &job](const std::string& path) { return artifact_text(app, job.id, path); };
     const ComputeOutput output = app.parts().recut(call);
     std::int64_t bytes = 0;

@@ -19,9 +19,10 @@ json stored_json(const std::string& text) {
     return json::parse(text, nullptr, /*allow_exceptions=*/false);
 }
 
-std::vector<std::string> job_actions(App& app, const JobRecord& job) {
+std::vector<std::string> job_actions(const JobRecord& job) {
     if (job.state == JobState::Queued || job.state == JobState::Computing) {
-        return {"cancel"};
+        return job.state == JobState::Queued ? std::vector<std::string>{"cancel", "move"}
+                                             : std::vector<std::string>{"cancel"};
     }
     std::vector<std::string> actions;
     if (job.state == JobState::Ready || job.state == JobState::Done) {
@@ -29,12 +30,10 @@ std::vector<std::string> job_actions(App& app, const JobRecord& job) {
         actions.emplace_back("recut");
     }
     actions.emplace_back("recompute");
-    const bool in_use =
-        std::any_of(job.cuts.begin(), job.cuts.end(), [&app](const std::string& id) {
-            const auto cut = app.store().cuts.find(id);
-            return cut && !is_final(cut->state);
-        });
-    if (!in_use) {
+    if (job.state == JobState::Failed || job.state == JobState::Cancelled) {
+        actions.emplace_back("retry");
+    }
+    if (!job.has_open_cut) {
         actions.emplace_back("remove");
     }
     return actions;
@@ -132,6 +131,13 @@ void add_subject(App& app, const EventRecord& event, json& data) {
             data["job"] = job_json(app, *job);
             return;
         }
+    } else if (event.type == "queue") {
+        data["queue"] = queue_json(app);
+        return;
+    } else if (event.type == "stock") {
+        if (app.store().stock.find(event.subject)) {
+            return;  // The note says what happened; GET /stock/{id} what is there.
+        }
     } else if (const auto cut = app.store().cuts.find(event.subject)) {
         data["cut"] = cut_json(app, *cut);
         return;
@@ -154,7 +160,9 @@ json job_json(App& app, const JobRecord& job) {
                           {"material", sheet.material},
                           {"state", sheet.cut ? "cut" : "uncut"},
                           {"program_sha256", sheet.program_sha256},
-                          {"estimated_s", sheet.estimated_s}});
+                          {"estimated_s", sheet.estimated_s},
+                          {"size_mm", sheet.size_mm},
+                          {"stock", sheet.stock.empty() ? json() : json(sheet.stock)}});
     }
     return {
         {"id", job.id},
@@ -163,6 +171,11 @@ json job_json(App& app, const JobRecord& job) {
         {"created_at", rfc3339(job.created_ms)},
         {"updated_at", rfc3339(job.updated_ms)},
         {"version", job.version},
+        {"priority", job.priority},
+        {"attempt", job.attempt},
+        {"retries", job.retries},
+        {"retry_cause", job.retry_cause},
+        {"dead_letter", job.failure && job.failure->code == "poison-job"},
         {"file", {{"name", job.file.name}, {"bytes", job.file.bytes}, {"sha256", job.file.sha256}}},
         {"params", stored_json(job.params_json)},
         {"progress", progress_json(app, job)},
@@ -171,7 +184,7 @@ json job_json(App& app, const JobRecord& job) {
         {"sheets", sheets},
         {"cuts", job.cuts},
         {"recut_of", job.recut_of.empty() ? json() : json(job.recut_of)},
-        {"actions", job_actions(app, job)}};
+        {"actions", job_actions(job)}};
 }
 
 json cut_json(App& app, const CutRecord& cut) {
@@ -274,7 +287,8 @@ std::string snapshot_event(App& app, std::int64_t seq, const std::optional<std::
                  {"type", "snapshot"},
                  {"jobs", json::array()},
                  {"cuts", json::array()},
-                 {"devices", json::array()}};
+                 {"devices", json::array()},
+                 {"queue", queue_json(app)}};
     JobQuery newest;
     newest.limit = kMostJobs;
     for (const JobRecord& each : app.store().jobs.list(newest)) {

@@ -18,6 +18,9 @@ namespace leafcutter::server {
 
 class App;
 
+// As GET /queue.
+nlohmann::json queue_json(App& app);
+
 nlohmann::json job_json(App& app, const JobRecord& job);
 nlohmann::json cut_json(App& app, const CutRecord& cut);
 nlohmann::json device_json(const DeviceRunner& runner);

@@ -10,6 +10,22 @@ export const kApi = '/api/v1';
 // Marks a call as made by our own page: a form on someone else's page cannot send this header.
 export const kOwnPage = { 'X-Leafcutter': 'dashboard' } as const;
 
+// The token that a session's own calls carry, and who is told when the daemon wants a login.
+let csrfToken: string | null = null;
+let onLoginWanted: () => void = () => undefined;
+
+export function carryToken(token: string | null): void {
+  csrfToken = token;
+}
+
+export function whenLoginWanted(told: () => void): void {
+  onLoginWanted = told;
+}
+
+export function ownHeaders(): Record<string, string> {
+  return csrfToken === null ? { ...kOwnPage } : { ...kOwnPage, 'X-CSRF-Token': csrfToken };
+}
+
 async function answer(path: string, init: RequestInit): Promise<Response> {
   let response: Response;
   try {
@@ -17,12 +33,16 @@ async function answer(path: string, init: RequestInit): Promise<Response> {
   } catch {
     throw unreachable();
   }
+  if (response.status === 401) onLoginWanted();
   if (!response.ok) throw problemFrom(response.status, await response.text().catch(() => ''));
   return response;
 }
 
-async function read<T>(path: string, reader: Reader<T>): Promise<T> {
-  const response = await answer(path, { headers: { Accept: 'application/json' } });
+export async function read<T>(path: string, reader: Reader<T>): Promise<T> {
+  return readAnswer(path, await answer(path, { headers: { Accept: 'application/json' } }), reader);
+}
+
+async function readAnswer<T>(path: string, response: Response, reader: Reader<T>): Promise<T> {
   try {
     return reader(await response.json(), '');
   } catch (fault) {
@@ -31,11 +51,16 @@ async function read<T>(path: string, reader: Reader<T>): Promise<T> {
   }
 }
 
-async function send(method: string, path: string, body?: unknown): Promise<Response> {
-  const headers: Record<string, string> = { ...kOwnPage };
+export async function send(method: string, path: string, body?: unknown): Promise<Response> {
+  const headers = ownHeaders();
   if (body === undefined) return answer(path, { method, headers });
   headers['Content-Type'] = 'application/json';
   return answer(path, { method, headers, body: JSON.stringify(body), keepalive: true });
+}
+
+// A call whose answer matters.
+export async function sendAndRead<T>(method: string, path: string, body: unknown, reader: Reader<T>): Promise<T> {
+  return readAnswer(path, await send(method, path, body), reader);
 }
 
 export const listJobs = (): Promise<readonly Job[]> => read('/jobs?limit=200', listUnder('jobs', readJob));
@@ -55,12 +80,31 @@ export async function removeJob(id: string): Promise<void> {
 
 // A new job from the mesh of an old one.
 export async function recomputeJob(id: string, params: Readonly<Record<string, unknown>>): Promise<Job> {
-  const response = await send('POST', `/jobs/${id}/recompute`, { params });
-  return readJob(await response.json(), '');
+  return sendAndRead('POST', `/jobs/${id}/recompute`, { params }, readJob);
+}
+
+// Single pieces or whole strips again, as a job that is ready to be cut.
+export async function recutJob(id: string, pieces: readonly string[]): Promise<Job> {
+  return sendAndRead('POST', `/jobs/${id}/recut`, { pieces }, readJob);
 }
 
 export async function queueCut(job: string, device: string, sheets: readonly number[]): Promise<void> {
   await send('POST', `/jobs/${job}/cuts`, { device, sheets });
+}
+
+// The rest of a cut that ended early, said by someone who looked at the sheet and the machine.
+export interface FinishWords {
+  readonly homed: boolean;
+  readonly burntMm: number | null; // As seen on the sheet, where the daemon isn't sure.
+}
+
+export async function finishCut(cut: string, words: FinishWords): Promise<Cut> {
+  const body = {
+    material_in_place: true,
+    ...(words.homed ? { homed: true } : {}),
+    ...(words.burntMm === null ? {} : { burnt_mm: words.burntMm }),
+  };
+  return sendAndRead('POST', `/cuts/${cut}/finish`, body, readCut);
 }
 
 export type CutAction = 'start' | 'confirm-sheet' | 'pause' | 'resume' | 'abort';
@@ -78,8 +122,8 @@ export interface Jog {
   readonly feedMmPerMin: number;
 }
 
-export async function commandDevice(id: string, command: string): Promise<void> {
-  await send('POST', `/devices/${id}/commands`, { command });
+export async function commandDevice(id: string, command: string, more: Readonly<Record<string, unknown>> = {}): Promise<void> {
+  await send('POST', `/devices/${id}/commands`, { command, ...more });
 }
 
 export async function jogDevice(id: string, jog: Jog): Promise<void> {

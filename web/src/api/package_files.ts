@@ -10,6 +10,7 @@ export interface QuadMesh {
   readonly positions: Float64Array; // x y z per vertex, mm.
   readonly corners: Uint32Array;
   readonly quadCount: number;
+  readonly cylinders: Uint32Array; // Per quad.
 }
 
 export interface Strip {
@@ -66,10 +67,11 @@ export interface Layout {
 
 export type Point3 = readonly [number, number, number];
 
-// What leaves.json says of the cylinders' borders: lines along them, and where those meet.
+// What leaves.json says: leaves of both foliations, the cylinders' borders, and where those meet.
 export interface CriticalGraph {
   readonly lines: readonly (readonly Point3[])[];
   readonly points: readonly Point3[];
+  readonly leaves: Readonly<Record<Family, readonly (readonly Point3[])[]>>;
 }
 
 const family = oneOf<Family>('weft', 'warp');
@@ -150,13 +152,54 @@ const point3: Reader<Point3> = (value, path) => {
   return [x, y, z];
 };
 
+interface Leaf {
+  readonly family: Family;
+  readonly points: readonly Point3[];
+}
+
+const readLeaf: Reader<Leaf> = (value, path) => {
+  const get = record(value, path);
+  const points = get('points', list(point3));
+  const first = points[0];
+  const closes = get('closed', optional((v) => v === true, false)) && first !== undefined;
+  return { family: get('family', family), points: closes ? [...points, first] : points };
+};
+
 export const readCriticalGraph: Reader<CriticalGraph> = (value, path) => {
   const get = record(value, path);
+  const leaves = get('leaves', optional(list(readLeaf), []));
+  const of = (name: Family): readonly (readonly Point3[])[] =>
+    leaves.filter((leaf) => leaf.family === name).map((leaf) => leaf.points);
   return {
+    leaves: { weft: of('weft'), warp: of('warp') },
     lines: get('critical_graph', optional(list((line, at) => record(line, at)('points', list(point3))), [])),
     points: get('singularities', optional(list((one, at) => record(one, at)('position', point3)), [])),
   };
 };
+
+export interface TriangleMesh {
+  readonly positions: Float32Array;
+  readonly indices: Uint32Array;
+}
+
+// surface.ply: ASCII, x y z first in every vertex, triangles only.
+export function readSurface(source: string): TriangleMesh {
+  const lines = source.split('\n');
+  const end = lines.indexOf('end_header');
+  const counts = /element vertex (\d+)[^]*element face (\d+)/.exec(lines.slice(0, end).join('\n'));
+  if (end < 0 || counts === null) throw new PayloadError('surface.ply: no such header');
+  const [vertices, faces] = [Number(counts[1]), Number(counts[2])];
+  const positions = new Float32Array(3 * vertices);
+  const indices = new Uint32Array(3 * faces);
+  for (let v = 0; v < vertices; v += 1) {
+    positions.set((lines[end + 1 + v] ?? '').split(' ', 3).map(Number), 3 * v);
+  }
+  for (let f = 0; f < faces; f += 1) {
+    indices.set((lines[end + 1 + vertices + f] ?? '').split(' ').slice(1, 4).map(Number), 3 * f);
+  }
+  if (!indices.every((v) => v < vertices)) throw new PayloadError('surface.ply: no such vertex');
+  return { positions, indices };
+}
 
 // 1 where warp lies on top, per quad.
 export const readWeave: Reader<Uint8Array> = (value, path) =>
@@ -167,6 +210,8 @@ export const readReport: Reader<Readonly<Record<string, unknown>>> = fields;
 export function readQuads(source: string): QuadMesh {
   const positions: number[] = [];
   const corners: number[] = [];
+  const cylinders: number[] = [];
+  let cylinder = 0;
   for (const line of source.split('\n')) {
     const words = line.trim().split(/\s+/);
     if (words[0] === 'v') {
@@ -174,6 +219,9 @@ export function readQuads(source: string): QuadMesh {
     } else if (words[0] === 'f') {
       if (words.length !== 5) throw new PayloadError(`quads.obj: a face of ${words.length - 1} corners`);
       for (const word of words.slice(1)) corners.push(Number.parseInt(word, 10) - 1);
+      cylinders.push(cylinder);
+    } else if (words[0] === 'g') {
+      cylinder = Number(/^cylinder_(\d+)$/.exec(words[1] ?? '')?.[1] ?? 0);
     }
   }
   const vertices = positions.length / 3;
@@ -183,5 +231,6 @@ export function readQuads(source: string): QuadMesh {
     positions: Float64Array.from(positions),
     corners: Uint32Array.from(corners),
     quadCount: corners.length / 4,
+    cylinders: Uint32Array.from(cylinders),
   };
 }

@@ -15,6 +15,7 @@ import {
 } from '../lib/check.ts';
 import type {
   Artifact,
+  Beam,
   Cut,
   CutProgress,
   Device,
@@ -86,6 +87,7 @@ export const readJob: Reader<Job> = (value, path) => {
     summary: get('summary', optional(readSummary, null)),
     sheets: get('sheets', optional(list(readSheet), [])),
     cuts: get('cuts', optional(names, [])),
+    priority: get('priority', optional(number, 0)),
     actions: get('actions', optional(names, [])),
   };
 };
@@ -102,6 +104,20 @@ const readCutProgress: Reader<CutProgress> = (value, path) => {
 
 const kNoProgress: CutProgress = { linesTotal: 0, linesSent: 0, linesAcknowledged: 0, fraction: 0 };
 
+const readBeam: Reader<Beam> = (value, path) => {
+  const get = record(value, path);
+  return {
+    percent: get('percent', optional(number, 0)),
+    burntMm: get('burnt_mm', optional(number, 0)),
+    leastMm: get('least_mm', optional(number, 0)),
+    mostMm: get('most_mm', optional(number, 0)),
+    totalMm: get('total_mm', optional(number, 0)),
+    line: get('line', optional(number, 0)),
+    certain: get('certain', optional(flag, false)),
+    positionKept: get('position_kept', optional(flag, false)),
+  };
+};
+
 export const readCut: Reader<Cut> = (value, path) => {
   const get = record(value, path);
   const sheets = get('sheets', list(number));
@@ -117,6 +133,8 @@ export const readCut: Reader<Cut> = (value, path) => {
     ),
     programSha256: get('program_sha256', optional(text, '')),
     progress: get('progress', optional(readCutProgress, kNoProgress)),
+    beam: get('beam', optional(readBeam, null)),
+    restOf: get('rest_of', optional(text, null)),
     reason: get('reason', optional(text, '')),
     version: get('version', optional(number, 0)),
     createdAt: get('created_at', optional(text, '')),
@@ -131,6 +149,7 @@ const readStatus: Reader<DeviceStatus> = (value, path) => {
     machinePositionMm: get('machine_position_mm', optional(list(number), [])),
     workPositionMm: get('work_position_mm', optional(list(number), [])),
     feedMmPerMin: get('feed_mm_per_min', optional(number, 0)),
+    overridePercent: get('override_percent', optional(list(number), [])),
     powerS: get('power_s', optional(number, 0)),
     alarmCode: get('alarm_code', optional(number, null)) || null, // Codes begin at 1.
     message: get('message', optional(text, '')),
@@ -149,8 +168,19 @@ export const readDevice: Reader<Device> = (value, path) => {
     bedMm: get('bed_mm', optional(list(number), [])),
     status: get('status', readStatus),
     cut: get('cut', optional(text, null)),
+    console: get('console', optional(names, [])),
     actions: get('actions', optional(names, [])),
   };
+};
+
+const readSize: Reader<{ widthMm: number; heightMm: number }> = (value, path) => {
+  const get = record(value, path);
+  return { widthMm: get('width_mm', number), heightMm: get('height_mm', number) };
+};
+
+const readLaser: Reader<Material['cut']> = (value, path) => {
+  const get = record(value, path);
+  return { feedMmPerMin: get('feed_mm_per_min', optional(number, 1000)), passes: get('passes', optional(number, 1)) };
 };
 
 export const readMaterial: Reader<Material> = (value, path) => {
@@ -161,6 +191,10 @@ export const readMaterial: Reader<Material> = (value, path) => {
     name: get('name', optional(text, id)),
     colour: get('colour', optional(text, '#888888')),
     thicknessMm: get('thickness_mm', optional(number, 0)),
+    weightGPerM2: get('weight_g_per_m2', optional(number, 0)),
+    sheets: get('sheets', optional(list(readSize), [])),
+    cut: get('cut', optional(readLaser, { feedMmPerMin: 1000, passes: 1 })),
+    raw: fields(value, path),
   };
 };
 

@@ -39,6 +39,7 @@ export interface Job {
   readonly summary: JobSummary | null;
   readonly sheets: readonly JobSheet[];
   readonly cuts: readonly string[];
+  readonly priority: number;
   readonly actions: readonly string[];
 }
 
@@ -60,8 +61,22 @@ export interface CutProgress {
   readonly fraction: number; // Of the current sheet.
 }
 
+// How far the beam got in a cut that ended early.
+export interface Beam {
+  readonly percent: number;
+  readonly burntMm: number;
+  readonly leastMm: number;
+  readonly mostMm: number;
+  readonly totalMm: number;
+  readonly line: number;
+  readonly certain: boolean;
+  readonly positionKept: boolean; // Otherwise the machine has to be homed first.
+}
+
 export interface Cut {
   readonly id: string;
+  readonly beam: Beam | null;
+  readonly restOf: string | null;
   readonly job: string;
   readonly device: string;
   readonly sheets: readonly number[];
@@ -81,6 +96,7 @@ export interface DeviceStatus {
   readonly workPositionMm: readonly number[];
   readonly feedMmPerMin: number;
   readonly powerS: number;
+  readonly overridePercent: readonly number[]; // Feed, rapid, power; empty: not known.
   readonly alarmCode: number | null;
   readonly message: string;
   readonly firmware: string;
@@ -94,6 +110,7 @@ export interface Device {
   readonly bedMm: readonly number[];
   readonly status: DeviceStatus;
   readonly cut: string | null;
+  readonly console: readonly string[];
   readonly actions: readonly string[];
 }
 
@@ -102,6 +119,10 @@ export interface Material {
   readonly name: string;
   readonly colour: string;
   readonly thicknessMm: number;
+  readonly weightGPerM2: number;
+  readonly sheets: readonly { readonly widthMm: number; readonly heightMm: number }[];
+  readonly cut: { readonly feedMmPerMin: number; readonly passes: number };
+  readonly raw: Readonly<Record<string, unknown>>; // All of it, as it came.
 }
 
 export interface Artifact {

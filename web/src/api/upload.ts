@@ -1,7 +1,7 @@
 // A new job with its mesh, as one multipart call. XMLHttpRequest, because fetch tells nothing of how far
 // an upload is.
 
-import { kApi, kOwnPage } from './client.ts';
+import { kApi, ownHeaders } from './client.ts';
 import { readJob } from './payloads.ts';
 import { Problem, problemFrom, unreachable } from './problem.ts';
 import type { Job } from './types.ts';
@@ -52,7 +52,7 @@ export function uploadJob(job: NewJob, onProgress: (fraction: number) => void): 
     };
   });
   request.open('POST', `${kApi}/jobs`);
-  for (const [header, value] of Object.entries(kOwnPage)) request.setRequestHeader(header, value);
+  for (const [header, value] of Object.entries(ownHeaders())) request.setRequestHeader(header, value);
   request.setRequestHeader('Idempotency-Key', idempotencyKey());
   request.send(formOf(job));
   return { done, cancel: () => request.abort() };

@@ -1,16 +1,19 @@
 // Numbers, sizes and times as people read them. Pure: the current time is always an argument.
 
-const kLocale = 'en';
+let locale = 'en';
 
-const wholeNumber = new Intl.NumberFormat(kLocale, { maximumFractionDigits: 0 });
+// Everything below speaks this language from now on.
+export function formatIn(tag: string): void {
+  locale = tag;
+}
 
 export function count(value: number): string {
-  return wholeNumber.format(value);
+  return new Intl.NumberFormat(locale, { maximumFractionDigits: 0 }).format(value);
 }
 
 // `digits` significant digits, without an exponent for the sizes that occur here.
 export function figure(value: number, digits = 3): string {
-  return new Intl.NumberFormat(kLocale, { maximumSignificantDigits: digits }).format(value);
+  return new Intl.NumberFormat(locale, { maximumSignificantDigits: digits }).format(value);
 }
 
 export function bytes(value: number): string {
@@ -32,6 +35,25 @@ export function duration(seconds: number): string {
   return `${Math.floor(minutes / 60)} h ${String(minutes % 60).padStart(2, '0')} min`;
 }
 
+// "3:07", "1:02:09": the place in a recording.
+export function clock(seconds: number): string {
+  const whole = Math.max(0, Math.floor(seconds));
+  const two = (value: number): string => String(value).padStart(2, '0');
+  const [hours, minutes] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60];
+  return hours > 0 ? `${hours}:${two(minutes)}:${two(whole % 60)}` : `${minutes}:${two(whole % 60)}`;
+}
+
+export function dateTime(rfc3339: string): string {
+  const then = new Date(rfc3339);
+  if (Number.isNaN(then.getTime())) return '';
+  return new Intl.DateTimeFormat(locale, { dateStyle: 'medium', timeStyle: 'short' }).format(then);
+}
+
+// Under 10 kg in grams.
+export function weight(grams: number): string {
+  return grams < 10_000 ? `${figure(grams, 3)} g` : `${figure(grams / 1000, 3)} kg`;
+}
+
 export function percent(fraction: number): string {
   return `${Math.floor(Math.min(1, Math.max(0, fraction)) * 100)} %`;
 }
@@ -49,11 +71,11 @@ export function age(rfc3339: string, now: Date): string {
   const then = new Date(rfc3339);
   const seconds = (now.getTime() - then.getTime()) / 1000;
   if (Number.isNaN(seconds)) return '';
-  const ago = new Intl.RelativeTimeFormat(kLocale, { numeric: 'auto' });
+  const ago = new Intl.RelativeTimeFormat(locale, { numeric: 'auto' });
   if (seconds < 45) return ago.format(0, 'second');
   if (seconds < 3600) return ago.format(-Math.max(1, Math.round(seconds / 60)), 'minute');
   if (seconds < 86400) return ago.format(-Math.round(seconds / 3600), 'hour');
-  return new Intl.DateTimeFormat(kLocale, { dateStyle: 'medium' }).format(then);
+  return new Intl.DateTimeFormat(locale, { dateStyle: 'medium' }).format(then);
 }
 
 // "rocker-arm.v2.obj" -> "rocker-arm.v2"

@@ -5,6 +5,8 @@ export interface Move {
   readonly line: number; // 1-based, of the file.
   readonly sent: number; // 1-based, among lines that hold a command (comments and blanks are not sent).
   readonly burns: boolean;
+  readonly startS: number; // When it starts and ends, if the machine kept every feed at once.
+  readonly endS: number;
   readonly points: readonly (readonly [number, number])[]; // From where the move starts; mm.
 }
 
@@ -12,6 +14,9 @@ export interface CutProgram {
   readonly lines: number; // All lines of the file.
   readonly sentLines: number; // Lines that hold a command.
   readonly moves: readonly Move[];
+  readonly totalS: number;
+  readonly burnMm: number;
+  readonly travelMm: number;
 }
 
 interface Modal {
@@ -22,6 +27,7 @@ interface Modal {
   unit: number;
   laser: boolean;
   power: number;
+  feed: number; // mm/min
 }
 
 interface Words {
@@ -31,6 +37,7 @@ interface Words {
   readonly j: number;
 }
 
+const kRapidMmPerMin = 6000; // G0 has no feed of its own.
 const kArcStep = Math.PI / 24;
 
 function strip(line: string): string {
@@ -39,6 +46,7 @@ function strip(line: string): string {
 
 function applyCode(modal: Modal, letter: string, value: number): void {
   if (letter === 'S') modal.power = value;
+  if (letter === 'F') modal.feed = value * modal.unit;
   if (letter === 'M' && (value === 3 || value === 4)) modal.laser = true;
   if (letter === 'M' && value === 5) modal.laser = false;
   if (letter !== 'G') return;
@@ -84,11 +92,18 @@ function target(modal: Modal, words: Words): [number, number] {
   return [go(modal.x, words.x), go(modal.y, words.y)];
 }
 
+function lengthOf(points: readonly (readonly [number, number])[]): number {
+  return points.reduce((sum, [x, y], index) => {
+    const before = points[index - 1];
+    return before === undefined ? sum : sum + Math.hypot(x - before[0], y - before[1]);
+  }, 0);
+}
+
 export function parseProgram(source: string): CutProgram {
-  const modal: Modal = { x: 0, y: 0, motion: 0, absolute: true, unit: 1, laser: false, power: 0 };
+  const modal: Modal = { x: 0, y: 0, motion: 0, absolute: true, unit: 1, laser: false, power: 0, feed: kRapidMmPerMin };
   const lines = source.replace(/\r?\n$/, '').split(/\r?\n/);
   const moves: Move[] = [];
-  let sent = 0;
+  let [sent, timeS, burnMm, travelMm] = [0, 0, 0, 0];
   lines.forEach((raw, index) => {
     const command = strip(raw);
     if (command === '' || command === '%') return;
@@ -100,8 +115,13 @@ export function parseProgram(source: string): CutProgram {
     if (modal.motion >= 2) points.push(...arcPoints(modal, words, end));
     points.push(end);
     const burns = modal.motion > 0 && modal.laser && modal.power > 0;
-    moves.push({ line: index + 1, sent, burns, points });
+    const mm = lengthOf(points);
+    const startS = timeS;
+    timeS += (60 * mm) / (modal.motion === 0 ? kRapidMmPerMin : Math.max(1, modal.feed));
+    if (burns) burnMm += mm;
+    else travelMm += mm;
+    moves.push({ line: index + 1, sent, burns, startS, endS: timeS, points });
     [modal.x, modal.y] = end;
   });
-  return { lines: lines.length, sentLines: sent, moves };
+  return { lines: lines.length, sentLines: sent, moves, totalS: timeS, burnMm, travelMm };
 }

@@ -57,11 +57,53 @@ export function movesDone(program: CutProgram, progress: CutProgress): number {
 }
 
 export function burntSoFar(plan: BurnPlan, progress: CutProgress): Burnt {
-  const done = movesDone(plan.program, progress);
+  return burntAfter(plan, movesDone(plan.program, progress));
+}
+
+function burntAfter(plan: BurnPlan, done: number): Burnt {
   const whole = Math.floor(done / kChunk);
   return {
     chunks: plan.chunks.slice(0, whole),
     growing: burnPath(plan.program.moves.slice(whole * kChunk, done)),
     beam: plan.program.moves[done - 1]?.points.at(-1) ?? null,
   };
+}
+
+// The part of a move that is done after `share` of its length.
+function partOf(move: Move, share: number): Move {
+  const lengths = move.points.map((to, index) => {
+    const from = move.points[index - 1] ?? to;
+    return Math.hypot(to[0] - from[0], to[1] - from[1]);
+  });
+  let left = share * lengths.reduce((sum, length) => sum + length, 0);
+  const points: (readonly [number, number])[] = [];
+  for (const [index, to] of move.points.entries()) {
+    const from = move.points[index - 1] ?? to;
+    const length = lengths[index] ?? 0;
+    if (length > left) {
+      const at = length === 0 ? 0 : left / length;
+      points.push([from[0] + at * (to[0] - from[0]), from[1] + at * (to[1] - from[1])]);
+      break;
+    }
+    left -= length;
+    points.push(to);
+  }
+  return { ...move, points };
+}
+
+// What is burnt `seconds` into the program, to the very point.
+export function burntAt(plan: BurnPlan, seconds: number): Burnt & { readonly line: number } {
+  const { moves } = plan.program;
+  let [low, high] = [0, moves.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if ((moves[middle]?.endS ?? Infinity) <= seconds) low = middle + 1;
+    else high = middle;
+  }
+  const whole = burntAfter(plan, low);
+  const move = moves[low];
+  if (move === undefined) return { ...whole, line: plan.program.lines };
+  const part = partOf(move, (seconds - move.startS) / Math.max(1e-9, move.endS - move.startS));
+  const kept = moves.slice(whole.chunks.length * kChunk, low);
+  return { ...whole, growing: burnPath([...kept, part]), beam: part.points.at(-1) ?? whole.beam, line: move.line };
 }

@@ -10,7 +10,7 @@ test('a line of three points is two segments, a single point none', () => {
 });
 
 test('leaves without a critical graph give nothing to draw', () => {
-  assert.deepEqual(readCriticalGraph({ leaves: [] }, ''), { lines: [], points: [] });
+  assert.deepEqual(readCriticalGraph({ leaves: [] }, ''), { lines: [], points: [], leaves: { weft: [], warp: [] } });
 });
 
 test('a point that is no point is refused by its path', () => {
@@ -23,5 +23,13 @@ test('lines and singular points are read', () => {
     { critical_graph: [{ points: [[0, 0, 0], [1, 2, 3]] }], singularities: [{ position: [4, 5, 6], prongs: 3 }] },
     '',
   );
-  assert.deepEqual(graph, { lines: [[[0, 0, 0], [1, 2, 3]]], points: [[4, 5, 6]] });
+  assert.deepEqual(graph.lines, [[[0, 0, 0], [1, 2, 3]]]);
+  assert.deepEqual(graph.points, [[4, 5, 6]]);
+});
+
+test('a closed leaf ends where it begins', () => {
+  const points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]];
+  const { leaves } = readCriticalGraph({ leaves: [{ family: 'warp', closed: true, points }] }, '');
+  assert.deepEqual(leaves.warp[0], [...points, points[0]]);
+  assert.deepEqual(leaves.weft, []);
 });

@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { draftFault, draftParams, kNewDraft, kRepeats, reduceDraft } from './draft.ts';
+import { kNoPicks } from './picks.ts';
 
 const file = (name: string): File => ({ name, size: 1 }) as File;
 
@@ -63,12 +64,23 @@ test('how pairs of pants are cut is not sent with a mode that has none: the daem
   assert.deepEqual(draftParams({ ...disk, mode: 'auto' })['foliation'], { pants: 'tunnel-loops', function: 'x' });
 });
 
-test('places of singular points are vertices, sent in the modes that have such points', () => {
-  const wanted = { ...kNewDraft, near: ' 12, 1895' } as const;
-  assert.deepEqual(draftParams(wanted)['foliation'], { singularities: [{ near: 12 }, { near: 1895 }] });
-  assert.deepEqual(draftParams({ ...wanted, mode: 'torus' })['foliation'], { mode: 'torus' });
-  for (const typed of ['top', '1.5', '-3', '7 7']) assert.equal(draftFault({ ...kNewDraft, near: typed }), 'near', typed);
-  assert.equal(draftFault({ ...kNewDraft, mode: 'disk', near: 'top' }), null);
+test('places count for one file alone, in the modes that have them', () => {
+  const picks = { ...kNoPicks, places: '12, 1895' };
+  assert.deepEqual(draftParams({ ...kNewDraft, picks })['foliation'], { singularities: [{ near: 12 }, { near: 1895 }] });
+  assert.deepEqual(draftParams({ ...kNewDraft, picks, mode: 'torus' })['foliation'], { mode: 'torus' });
+  const two = reduceDraft({ ...kNewDraft, picks }, { type: 'add', files: [file('a.obj'), file('b.obj')] });
+  assert.equal(draftParams(two)['foliation'], undefined);
+  const wrong = { ...kNewDraft, picks: { ...kNoPicks, places: 'top' } };
+  assert.equal(draftFault(wrong), 'picks');
+  assert.equal(draftFault({ ...wrong, mode: 'disk' }), null);
+});
+
+test('a job that is woven again begins with its own parameters', () => {
+  const params = draftParams({ ...kNewDraft, mode: 'disk', pattern: 'satin-5', stripWidthMm: '7.5', units: 'mm', more: { 'fit.joint': 'slot' } });
+  const again = reduceDraft(kNewDraft, { type: 'again', job: 'j1', name: 'Vase', params });
+  assert.deepEqual(draftParams(again), params);
+  assert.equal(again.again?.job, 'j1');
+  assert.equal(reduceDraft(again, { type: 'clear' }).again, null);
 });
 
 test('every repeat is a full matrix in which both families come to the top', () => {

@@ -1,30 +1,24 @@
 // The job that is about to be made: files dropped on the page, and how they are to be woven.
 
 import { stem } from '../lib/format.ts';
+import {
+  type Components,
+  type FoliationMode,
+  kComponents,
+  kModes,
+  kPantsSources,
+  kPunctures,
+  kSweepFunctions,
+  type PantsSource,
+  type Punctures,
+  type SweepFunction,
+  usesPants,
+} from './foliation_choices.ts';
+import { moreFault, moreOf, type MoreParams, moreParams } from './params.ts';
+import { kNoPicks, pickFault, pickParams, type Picks, picksOf } from './picks.ts';
 
 export const kPatterns = ['plain', 'twill-2x2', 'double-warp', 'double-weft', 'satin-5', 'basket-2x2'] as const;
 export type Pattern = (typeof kPatterns)[number];
-
-// How the surface is foliated: the words of the job parameters, the daemon's own choice first.
-export const kModes = [
-  'auto',
-  'pants',
-  'one-form',
-  'disk',
-  'annulus',
-  'torus',
-  'sphere-pillowcase',
-  'sphere-polar',
-] as const;
-export type FoliationMode = (typeof kModes)[number];
-export const kPantsSources = ['reeb', 'handle-loops', 'tunnel-loops'] as const;
-export type PantsSource = (typeof kPantsSources)[number];
-export const kSweepFunctions = ['auto', 'harmonic', 'x', 'y', 'z', 'fiedler'] as const;
-export type SweepFunction = (typeof kSweepFunctions)[number];
-export const kPunctures = ['auto', 'none'] as const;
-export type Punctures = (typeof kPunctures)[number];
-export const kComponents = ['each', 'largest'] as const;
-export type Components = (typeof kComponents)[number];
 
 export interface DraftFile {
   readonly key: number;
@@ -34,6 +28,8 @@ export interface DraftFile {
 
 export interface Draft {
   readonly files: readonly DraftFile[];
+  readonly again: { readonly job: string; readonly name: string } | null; // A job to be woven once more.
+  readonly units: 'longest' | 'mm'; // Scaled to a length, or the file's numbers are millimetres.
   readonly longestSideMm: string; // As typed.
   readonly stripWidthMm: string;
   readonly pattern: Pattern;
@@ -44,11 +40,14 @@ export interface Draft {
   readonly sweep: SweepFunction;
   readonly punctures: Punctures;
   readonly components: Components;
-  readonly near: string; // As typed: vertices near which singular points are wanted.
+  readonly picks: Picks; // Places on the surface; count for a single file alone.
+  readonly more: MoreParams;
 }
 
 export const kNewDraft: Draft = {
   files: [],
+  again: null,
+  units: 'longest',
   longestSideMm: '300',
   stripWidthMm: '10',
   pattern: 'plain',
@@ -59,26 +58,21 @@ export const kNewDraft: Draft = {
   sweep: 'auto',
   punctures: 'auto',
   components: 'each',
-  near: '',
+  picks: kNoPicks,
+  more: {},
 };
-
-// Whether the surface may be cut into pairs of pants in this mode.
-export function usesPants(mode: FoliationMode): boolean {
-  return mode === 'auto' || mode === 'pants';
-}
-
-// Whether the leaves can have singular points in this mode.
-export function usesPlaces(mode: FoliationMode): boolean {
-  return mode !== 'disk' && mode !== 'annulus' && mode !== 'torus';
-}
 
 export type DraftAction =
   | { readonly type: 'add'; readonly files: readonly File[] }
   | { readonly type: 'put-back'; readonly files: readonly DraftFile[] }
   | { readonly type: 'drop'; readonly key: number }
   | { readonly type: 'rename'; readonly key: number; readonly name: string }
-  | { readonly type: 'set'; readonly values: Partial<Omit<Draft, 'files'>> }
+  | { readonly type: 'set'; readonly values: Partial<Omit<Draft, 'files' | 'again'>> }
+  | { readonly type: 'again'; readonly job: string; readonly name: string; readonly params: Params }
+  | { readonly type: 'preset'; readonly params: Params }
   | { readonly type: 'clear' };
+
+type Params = Readonly<Record<string, unknown>>;
 
 function withFiles(draft: Draft, files: readonly Omit<DraftFile, 'key'>[]): Draft {
   const next = Math.max(0, ...draft.files.map((entry) => entry.key)) + 1;
@@ -101,46 +95,47 @@ export function reduceDraft(draft: Draft, action: DraftAction): Draft {
       };
     case 'set':
       return { ...draft, ...action.values };
+    case 'again':
+      return { ...draftOf(action.params), again: { job: action.job, name: action.name } };
+    case 'preset':
+      return { ...draftOf(action.params), files: draft.files, again: draft.again, picks: draft.picks };
     case 'clear':
-      return { ...draft, files: [] };
+      return { ...draft, files: [], again: null, picks: kNoPicks };
   }
 }
 
-export type DraftFault = 'longest-side' | 'strip-width' | 'strip-too-wide' | 'near';
+export type DraftFault = 'longest-side' | 'strip-width' | 'strip-too-wide' | 'picks' | 'more';
 
 function positive(typed: string): number | null {
   const value = Number(typed.trim().replace(',', '.'));
   return typed.trim() !== '' && Number.isFinite(value) && value > 0 ? value : null;
 }
 
-// The vertices typed, or null where that is no list of different numbers.
-function verticesOf(typed: string): readonly number[] | null {
-  const words = typed.split(/[\s,;]+/).filter((word) => word !== '');
-  const vertices = words.map(Number);
-  const isList = words.every((word) => /^\d{1,9}$/.test(word)) && new Set(vertices).size === vertices.length;
-  return isList ? vertices : null;
+// Places are those of one surface.
+function countingPicks(draft: Draft): Picks {
+  return draft.files.length > 1 ? kNoPicks : draft.picks;
 }
 
 export function draftFault(draft: Draft): DraftFault | null {
   const longest = positive(draft.longestSideMm);
   const strip = positive(draft.stripWidthMm);
-  if (longest === null) return 'longest-side';
+  if (draft.units === 'longest' && longest === null) return 'longest-side';
   if (strip === null) return 'strip-width';
-  if (strip > longest / 3) return 'strip-too-wide';
-  return usesPlaces(draft.mode) && verticesOf(draft.near) === null ? 'near' : null;
+  if (draft.units === 'longest' && longest !== null && strip > longest / 3) return 'strip-too-wide';
+  if (pickFault(countingPicks(draft), draft.mode, draft.pants) !== null) return 'picks';
+  return moreFault(draft.more) === null ? null : 'more';
 }
 
 // What differs from the daemon's own choice.
 function foliationParams(draft: Draft): Readonly<Record<string, unknown>> {
   const cut = usesPants(draft.mode);
-  const near = usesPlaces(draft.mode) ? (verticesOf(draft.near) ?? []) : [];
   return {
     ...(draft.mode === 'auto' ? {} : { mode: draft.mode }),
     ...(cut && draft.pants !== 'reeb' ? { pants: draft.pants } : {}),
     ...(cut && draft.sweep !== 'auto' ? { function: draft.sweep } : {}),
     ...(draft.punctures === 'auto' ? {} : { punctures: draft.punctures }),
     ...(draft.components === 'each' ? {} : { components: draft.components }),
-    ...(near.length === 0 ? {} : { singularities: near.map((vertex) => ({ near: vertex })) }),
+    ...pickParams(countingPicks(draft), draft.mode, draft.pants),
   };
 }
 
@@ -151,12 +146,45 @@ export function draftParams(draft: Draft): Readonly<Record<string, unknown>> {
     ...(draft.warp === '' ? {} : { warp: draft.warp }),
   };
   const foliation = foliationParams(draft);
+  const { grid, weave, ...more } = moreParams(draft.more);
   return {
-    scale: { longest_side_mm: positive(draft.longestSideMm) },
+    scale: draft.units === 'mm' ? { units: 'mm' } : { longest_side_mm: positive(draft.longestSideMm) },
     ...(Object.keys(foliation).length === 0 ? {} : { foliation }),
-    grid: { strip_width_mm: positive(draft.stripWidthMm), may_narrow: true },
-    weave: { pattern: draft.pattern },
+    grid: { strip_width_mm: positive(draft.stripWidthMm), may_narrow: true, ...grid },
+    weave: { pattern: draft.pattern, ...weave },
     ...(Object.keys(material).length === 0 ? {} : { material }),
+    ...more,
+  };
+}
+
+function within(params: Params, group: string, key: string): unknown {
+  const part = params[group];
+  return typeof part === 'object' && part !== null ? (part as Params)[key] : undefined;
+}
+
+// The way back: the draft that a job's parameters stand for. What the form has no place for is dropped.
+export function draftOf(params: Params): Draft {
+  const named = <T extends string>(group: string, key: string, all: readonly T[], otherwise: T): T =>
+    all.find((one) => one === within(params, group, key)) ?? otherwise;
+  const typed = (group: string, key: string, otherwise: string): string => {
+    const value = within(params, group, key);
+    return typeof value === 'number' || typeof value === 'string' ? String(value) : otherwise;
+  };
+  return {
+    ...kNewDraft,
+    units: within(params, 'scale', 'units') === 'mm' ? 'mm' : 'longest',
+    longestSideMm: typed('scale', 'longest_side_mm', kNewDraft.longestSideMm),
+    stripWidthMm: typed('grid', 'strip_width_mm', kNewDraft.stripWidthMm),
+    pattern: named('weave', 'pattern', kPatterns, 'plain'),
+    weft: typed('material', 'weft', ''),
+    warp: typed('material', 'warp', ''),
+    mode: named('foliation', 'mode', kModes, 'auto'),
+    pants: named('foliation', 'pants', kPantsSources, 'reeb'),
+    sweep: named('foliation', 'function', kSweepFunctions, 'auto'),
+    punctures: named('foliation', 'punctures', kPunctures, 'auto'),
+    components: named('foliation', 'components', kComponents, 'each'),
+    picks: picksOf((params['foliation'] ?? {}) as Params),
+    more: moreOf(params),
   };
 }
 

@@ -19,6 +19,7 @@ function job(id: string, over: Partial<Job> = {}): Job {
     summary: null,
     sheets: [],
     cuts: [],
+    priority: 0,
     actions: [],
     ...over,
   };
@@ -27,7 +28,8 @@ function job(id: string, over: Partial<Job> = {}): Job {
 function cut(id: string, state: Cut['state'], createdAt: string): Cut {
   const progress = { linesTotal: 0, linesSent: 0, linesAcknowledged: 0, fraction: 0 };
   return {
-    id, state, createdAt, progress, job: 'a', device: 'sim', sheets: [1], sheet: 1, programSha256: '', reason: '', version: 0, actions: [],
+    id, state, createdAt, progress, job: 'a', device: 'sim', sheets: [1], sheet: 1, programSha256: '', reason: '', beam: null, restOf: null,
+    version: 0, actions: [],
   };
 }
 

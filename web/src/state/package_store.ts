@@ -3,12 +3,14 @@
 import { signal } from '@preact/signals';
 
 import { artifactBytes, artifactText, listArtifacts } from '../api/client.ts';
+import { type Assembly, readAssembly } from '../api/assembly_file.ts';
 import type { SolidModel } from '../api/glb.ts';
-import { type CriticalGraph, type QuadMesh, readCriticalGraph, readLayout, readQuads, readReport, readStrips, readWeave } from '../api/package_files.ts';
+import { type CriticalGraph, type QuadMesh, readCriticalGraph, readLayout, readQuads, readReport, readStrips, readSurface, readWeave, type Strips, type TriangleMesh } from '../api/package_files.ts';
 import type { Artifact } from '../api/types.ts';
 import type { Reader } from '../lib/check.ts';
 import { parseProgram } from '../lib/gcode.ts';
 import { type BurnPlan, planBurn } from './burn.ts';
+import { type QualityFile, readQuality } from './heat.ts';
 import { reportFigures, type ReportFigures } from './report.ts';
 import { drawSheets, type SheetDrawing } from './sheets.ts';
 import { problemText } from './store.ts';
@@ -19,6 +21,8 @@ export interface JobPackage {
   readonly artifacts: readonly Artifact[];
   readonly mesh: QuadMesh;
   readonly warpOnTop: Uint8Array;
+  readonly assembly: Assembly;
+  readonly strips: Strips;
   readonly index: StripIndex;
   readonly sheets: readonly SheetDrawing[];
   readonly figures: ReportFigures;
@@ -42,7 +46,7 @@ async function json<T>(job: string, path: string, reader: Reader<T>): Promise<T>
   return reader(JSON.parse(await artifactText(job, path)), path);
 }
 
-const kNoCriticalGraph: CriticalGraph = { lines: [], points: [] };
+const kNoCriticalGraph: CriticalGraph = { lines: [], points: [], leaves: { weft: [], warp: [] } };
 const kMostLeafBytes = 60_000_000; // The page does well without larger ones.
 
 // Only for drawing: a package without it is shown all the same.
@@ -52,12 +56,12 @@ async function criticalGraph(job: string, artifacts: readonly Artifact[]): Promi
   return json(job, leaves.path, readCriticalGraph).catch(() => kNoCriticalGraph);
 }
 
-async function fetchPackage(job: string): Promise<JobPackage> {
-  const [artifacts, mesh, strips, warpOnTop, layout, report] = await Promise.all([
+export async function fetchPackage(job: string): Promise<JobPackage> {
+  const [artifacts, mesh, strips, woven, layout, report] = await Promise.all([
     listArtifacts(job),
     artifactText(job, 'quads.obj').then(readQuads),
     json(job, 'strips.json', readStrips),
-    json(job, 'weave.json', readWeave),
+    json(job, 'weave.json', (value, path) => ({ warpOnTop: readWeave(value, path), assembly: readAssembly(value, path) })),
     json(job, 'layout.json', readLayout),
     json(job, 'report.json', readReport),
   ]);
@@ -65,7 +69,8 @@ async function fetchPackage(job: string): Promise<JobPackage> {
     job,
     artifacts,
     mesh,
-    warpOnTop,
+    ...woven,
+    strips,
     index: indexStrips(strips, layout),
     sheets: drawSheets(layout, strips),
     figures: reportFigures(report),
@@ -101,6 +106,12 @@ export async function loadSolidModel(job: string): Promise<SolidModel> {
   const [{ readSolidModel }, bytes] = await Promise.all([import('../api/glb.ts'), artifactBytes(job, kSolidPath)]);
   return readSolidModel(bytes);
 }
+
+export async function loadSurface(job: string): Promise<TriangleMesh> {
+  return readSurface(await artifactText(job, 'surface.ply'));
+}
+
+export const loadQuality = (job: string): Promise<QualityFile> => json(job, 'quality.json', readQuality);
 
 export function sheetProgramPath(sheet: number): string {
   return `sheets/sheet-${String(sheet).padStart(3, '0')}.gcode`;

@@ -1,6 +1,6 @@
 // Weaving a job's mesh once more, laid out as one of the alternatives that were looked at.
 
-import { type FoliationMode, kModes } from './draft.ts';
+import { type FoliationMode, kModes } from './foliation_choices.ts';
 
 type Params = Readonly<Record<string, unknown>>;
 

@@ -40,6 +40,7 @@ export interface FoliationFigures {
 export interface ReportFigures {
   readonly foliation: FoliationFigures | null;
   readonly quality: readonly QualityRow[];
+  readonly cylinders: readonly { readonly cylinder: number; readonly quads: number; readonly quality: readonly QualityRow[] }[];
   readonly facts: {
     readonly vertices: number | null;
     readonly faces: number | null;
@@ -136,19 +137,23 @@ export function evennessOf(largest: number): Evenness {
   return largest < 6 ? 'uneven' : 'coarse';
 }
 
-export function reportFigures(report: Report): ReportFigures {
-  const quality = kQuality
-    .map((name) => ({
-      name,
-      average: numberAt(report, 'quality', 'overall', name, 'avg'),
-      largest: numberAt(report, 'quality', 'overall', name, 'max'),
-    }))
+function qualityRows(figures: unknown): readonly QualityRow[] {
+  return kQuality
+    .map((name) => ({ name, average: numberAt(figures, name, 'avg'), largest: numberAt(figures, name, 'max') }))
     .filter((row) => row.average !== null || row.largest !== null);
+}
+
+export function reportFigures(report: Report): ReportFigures {
   const timings = Object.values((at(report, 'timings_s') as object | undefined) ?? {});
   const seconds = timings.filter((value): value is number => typeof value === 'number');
   return {
     foliation: foliationFigures(report),
-    quality,
+    quality: qualityRows(at(report, 'quality', 'overall')),
+    cylinders: listAt(report, 'quality', 'cylinders').map((one, index) => ({
+      cylinder: numberAt(one, 'cylinder') ?? index,
+      quads: numberAt(one, 'quads') ?? 0,
+      quality: qualityRows(one),
+    })),
     facts: {
       vertices: numberAt(report, 'input', 'vertices'),
       faces: numberAt(report, 'input', 'faces'),

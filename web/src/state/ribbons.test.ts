@@ -15,7 +15,7 @@ function sheet(n: number): QuadMesh {
       corners.push(a, a + 1, a + n + 2, a + n + 1);
     }
   }
-  return { positions: Float64Array.from(positions), corners: Uint32Array.from(corners), quadCount: n * n };
+  return { positions: Float64Array.from(positions), corners: Uint32Array.from(corners), quadCount: n * n, cylinders: new Uint32Array(n * n) };
 }
 
 const checker = (n: number): Uint8Array => Uint8Array.from({ length: n * n }, (_, q) => ((q % n) + Math.floor(q / n)) % 2);

@@ -11,7 +11,9 @@ import { t } from '../messages/messages.ts';
 import { type Connection, type ConnectionSignal, nextConnection, retryDelayMs } from './connection.ts';
 import { type Draft, type DraftAction, kNewDraft, reduceDraft } from './draft.ts';
 import { type Doubtful, doubtfulAfter, isConnected, kEmptyFeed, reduceFeed } from './feed.ts';
+import { newsOf, notify } from './notify.ts';
 import { formatRoute, parseRoute, type Route } from './route.ts';
+import { settings } from './settings.ts';
 
 export const feed = signal(kEmptyFeed);
 export const connection = signal<Connection>('idle');
@@ -21,8 +23,8 @@ export const connectedDevices = computed<readonly Device[]>(() => [...feed.value
 
 export const materials = signal<readonly Material[]>([]);
 
-export async function loadMaterials(): Promise<void> {
-  if (materials.value.length === 0) materials.value = await listMaterials();
+export async function loadMaterials(again = false): Promise<void> {
+  if (again || materials.value.length === 0) materials.value = await listMaterials();
 }
 
 export function materialName(id: string): string {
@@ -71,9 +73,17 @@ async function askAgain({ cuts, jobs }: Doubtful): Promise<void> {
 
 export function receive(event: FeedEvent): void {
   const before = feed.value;
+  const news = settings.value.notify ? newsOf(before, event) : null;
   feed.value = reduceFeed(before, event);
+  if (news !== null) notify(news);
   // What can't be had now comes with the next event.
   askAgain(doubtfulAfter(before, event)).catch(() => undefined);
+}
+
+// After a machine was added, changed or forgotten, of which no event tells.
+export async function refreshDevices(): Promise<void> {
+  const devices = await listDevices();
+  feed.value = { ...feed.value, devices: new Map(devices.map((device) => [device.id, device])) };
 }
 
 export function changeDraft(action: DraftAction): void {

@@ -2,11 +2,12 @@
 
 import { signal } from '@preact/signals';
 
+import { recomputeJob } from '../api/client.ts';
 import { Problem } from '../api/problem.ts';
 import type { Job } from '../api/types.ts';
 import { type NewJob, type Upload, uploadJob } from '../api/upload.ts';
 import { draftParams } from './draft.ts';
-import { changeDraft, draft, go, problemText, receive } from './store.ts';
+import { attempt, changeDraft, draft, go, problemText, receive } from './store.ts';
 
 export interface Sending {
   readonly key: number;
@@ -47,10 +48,21 @@ async function send(job: NewJob): Promise<Job | null> {
   }
 }
 
+// The same mesh with the draft's parameters. The draft stays if they are refused.
+async function weaveAgain(job: string): Promise<void> {
+  const done = await attempt(async () => {
+    const made = await recomputeJob(job, draftParams(draft.value));
+    receive({ type: 'job', seq: null, job: made });
+    go({ page: 'job', id: made.id });
+  });
+  if (done) changeDraft({ type: 'clear' });
+}
+
 // Sends the draft's files. A single one is opened as soon as it is a job. Files that were refused come
 // back into the draft, so that a wrong setting can be mended.
 export async function sendDraft(): Promise<void> {
-  const { files } = draft.value;
+  const { files, again } = draft.value;
+  if (again !== null) return weaveAgain(again.job);
   const params = draftParams(draft.value);
   changeDraft({ type: 'clear' });
   const made = await Promise.all(files.map(({ file, name }) => send({ file, name: name.trim() || file.name, params })));

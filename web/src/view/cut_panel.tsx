@@ -7,16 +7,10 @@ import type { Cut, Device, Job } from '../api/types.ts';
 import { count, duration, shortHash } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
 import { isOver } from '../state/feed.ts';
-import { attempt, connectedDevices, feed, materialName } from '../state/store.ts';
+import { attempt, connectedDevices, materialName } from '../state/store.ts';
 import { AskButton, Bar } from './controls.tsx';
-
-const deviceName = (id: string): string => feed.value.devices.get(id)?.name ?? id;
-
-// A cut that waits only for its operator is ready, whatever its queue calls it.
-function cutWord(cut: Cut): string {
-  const word = cut.actions.includes('start') ? t.cut.ready : t.cut.states[cut.state];
-  return word(deviceName(cut.device));
-}
+import { cutWord } from './cut_words.ts';
+import { FinishForm } from './finish_form.tsx';
 
 function QueueForm(props: { readonly job: Job }) {
   const { job } = props;
@@ -169,6 +163,7 @@ export function CutPanel(props: { readonly job: Job; readonly cut: Cut | null })
               {cut.reason !== '' && <span class="quiet"> {cut.reason}</span>}
             </p>
           )}
+          {cut !== null && cut.actions.includes('finish') && <FinishForm cut={cut} />}
           {job.actions.includes('cut') ? <QueueForm job={job} /> : <p class="quiet">{t.cut.allDone}</p>}
         </>
       )}

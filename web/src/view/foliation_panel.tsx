@@ -10,8 +10,6 @@ import { attempt, go, receive } from '../state/store.ts';
 import { Panel } from './controls.tsx';
 import { Fact } from './report_panel.tsx';
 
-const words = t.foliation;
-
 function layoutName(name: string): string {
   const mode = modeNamed(name);
   return mode === null ? name : t.modes[mode];
@@ -37,10 +35,10 @@ function AlternativeRow(props: { readonly job: Job; readonly one: Alternative })
   return (
     <tr class={one.chosen ? 'chosen' : ''}>
       <th scope="row">
-        {layoutName(one.name)} {one.chosen && <span class="tag">{words.chosen}</span>}
+        {layoutName(one.name)} {one.chosen && <span class="tag">{t.foliation.chosen}</span>}
         {can && (
           <button type="button" class="button small" onClick={() => void weaveLike(job, one.name)}>
-            {words.recompute}
+            {t.foliation.recompute}
           </button>
         )}
       </th>
@@ -52,10 +50,10 @@ function AlternativeRow(props: { readonly job: Job; readonly one: Alternative })
 }
 
 function AlternativeTable(props: { readonly job: Job; readonly rows: readonly Alternative[] }) {
-  const { name, largest, variation, removed } = words.columns;
+  const { name, largest, variation, removed } = t.foliation.columns;
   return (
     <table class="alternatives">
-      <caption class="visually-hidden">{words.alternatives}</caption>
+      <caption class="visually-hidden">{t.foliation.alternatives}</caption>
       <thead>
         <tr>
           {[name, largest, variation, removed].map((title) => (
@@ -79,11 +77,11 @@ function Alternatives(props: { readonly job: Job; readonly all: readonly Alterna
   if (first.length === 0) return null;
   return (
     <div>
-      <h3>{words.alternatives}</h3>
+      <h3>{t.foliation.alternatives}</h3>
       <AlternativeTable job={props.job} rows={first} />
       {rest.length > 0 && (
         <details>
-          <summary>{words.more(rest.length)}</summary>
+          <summary>{t.foliation.more(rest.length)}</summary>
           <AlternativeTable job={props.job} rows={rest} />
         </details>
       )}
@@ -94,20 +92,20 @@ function Alternatives(props: { readonly job: Job; readonly all: readonly Alterna
 export function FoliationPanel(props: { readonly job: Job; readonly figures: FoliationFigures }) {
   const { job, figures } = props;
   const { largest, points, holeRadiiMm: holes } = figures;
-  const said = points.map(({ prongs, count }) => words.point(prongs, count)).join(', ');
+  const said = points.map(({ prongs, count }) => t.foliation.point(prongs, count)).join(', ');
   return (
-    <Panel title={words.title} class="foliation">
-      {largest !== null && <p>{words.evenness[evennessOf(largest)](figure(largest, 2))}</p>}
+    <Panel title={t.foliation.title} class="foliation">
+      {largest !== null && <p>{t.foliation.evenness[evennessOf(largest)](figure(largest, 2))}</p>}
       <dl class="facts-list">
-        <Fact name={words.mode} value={layoutName(figures.mode)} />
-        <Fact name={words.cylinders} value={figure(figures.cylinders)} />
-        <Fact name={words.points} value={said === '' ? words.noPoints : said} />
+        <Fact name={t.foliation.mode} value={layoutName(figures.mode)} />
+        <Fact name={t.foliation.cylinders} value={figure(figures.cylinders)} />
+        <Fact name={t.foliation.points} value={said === '' ? t.foliation.noPoints : said} />
         <Fact
-          name={words.holes}
-          value={holes.length === 0 ? words.noHoles : `${holes.length}: ${words.hole(holes.map((mm) => figure(mm, 2)).join(', '))}`}
+          name={t.foliation.holes}
+          value={holes.length === 0 ? t.foliation.noHoles : `${holes.length}: ${t.foliation.hole(holes.map((mm) => figure(mm, 2)).join(', '))}`}
         />
-        <Fact name={words.removed} value={percentOf(figures.removedPercent)} />
-        {figures.parts > 1 && <Fact name={words.parts} value={figure(figures.parts)} />}
+        <Fact name={t.foliation.removed} value={percentOf(figures.removedPercent)} />
+        {figures.parts > 1 && <Fact name={t.foliation.parts} value={figure(figures.parts)} />}
       </dl>
       <Alternatives job={job} all={figures.alternatives} />
     </Panel>

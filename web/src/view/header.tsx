@@ -1,21 +1,21 @@
-// The bar that is always there: where one is, whether the page is live, and the STOP buttons.
+// The bar that is always there: where one is, whether the page is live, and the STOP button.
 
 import { t } from '../messages/messages.ts';
-import { formatRoute, type Route } from '../state/route.ts';
+import { formatRoute, type Section, sectionOf } from '../state/route.ts';
 import { connection, route } from '../state/store.ts';
-import { Logo } from './icons.tsx';
-import { StopBar } from './stop_bar.tsx';
+import { Icon, type IconName, Logo } from './icons.tsx';
+import { StopButton } from './stop_button.tsx';
 
-function NavLink(props: { readonly to: Route; readonly here: boolean; readonly children: string }) {
-  return (
-    <a href={formatRoute(props.to)} aria-current={props.here ? 'page' : undefined}>
-      {props.children}
-    </a>
-  );
-}
+const kSections: readonly { readonly section: Section; readonly icon: IconName }[] = [
+  { section: 'jobs', icon: 'weave' },
+  { section: 'queue', icon: 'list' },
+  { section: 'machines', icon: 'laser' },
+  { section: 'materials', icon: 'sheet' },
+  { section: 'settings', icon: 'gear' },
+];
 
 export function Header() {
-  const { page } = route.value;
+  const here = sectionOf(route.value);
   const state = connection.value;
   return (
     <header class="top">
@@ -23,19 +23,19 @@ export function Header() {
         <Logo />
         <span>{t.title}</span>
       </a>
-      <nav aria-label={t.nav.label}>
-        <NavLink to={{ page: 'jobs' }} here={page !== 'machines'}>
-          {t.nav.jobs}
-        </NavLink>
-        <NavLink to={{ page: 'machines' }} here={page === 'machines'}>
-          {t.nav.machines}
-        </NavLink>
+      <nav class="main-nav" aria-label={t.nav.label}>
+        {kSections.map(({ section, icon }) => (
+          <a key={section} href={formatRoute({ page: section })} aria-current={section === here ? 'page' : undefined}>
+            <Icon name={icon} />
+            <span>{t.nav[section]}</span>
+          </a>
+        ))}
       </nav>
       <p class={`connection connection-${state}`} role="status">
         <span class="dot" aria-hidden="true" />
         <span class="connection-word">{t.connection[state]}</span>
       </p>
-      <StopBar />
+      <StopButton />
     </header>
   );
 }

@@ -6,9 +6,10 @@ import { getJob, packageUrl, removeJob } from '../api/client.ts';
 import type { Job } from '../api/types.ts';
 import { bytes, count, duration } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
-import { currentCut } from '../state/feed.ts';
+import { currentCut, newestFirst } from '../state/feed.ts';
 import { jobPackage, type JobPackage, loadPackage } from '../state/package_store.ts';
-import { attempt, feed, go, loadMaterials, receive } from '../state/store.ts';
+import { formatRoute } from '../state/route.ts';
+import { attempt, changeDraft, feed, go, loadMaterials, receive } from '../state/store.ts';
 import { AskButton, Chip } from './controls.tsx';
 import { CutPanel } from './cut_panel.tsx';
 import { FilesPanel } from './files_panel.tsx';
@@ -25,9 +26,39 @@ async function remove(job: Job): Promise<void> {
   go({ page: 'jobs' });
 }
 
+// Opens the form with this job's own parameters in it.
+function weaveAgain(job: Job): void {
+  changeDraft({ type: 'again', job: job.id, name: job.name, params: job.params });
+  go({ page: 'jobs' });
+}
+
+const isFinished = (job: Job): boolean => job.state === 'ready' || job.state === 'done';
+
+// Other results to lay beside this one.
+function CompareWith(props: { readonly job: Job }) {
+  const { job } = props;
+  const others = newestFirst(feed.value.jobs).filter((one) => one.id !== job.id && isFinished(one));
+  if (!isFinished(job) || others.length === 0) return null;
+  return (
+    <select
+      class="button compare-with"
+      aria-label={t.job.compare}
+      value=""
+      onChange={(event) => go({ page: 'compare', id: job.id, other: event.currentTarget.value })}
+    >
+      <option value="">{t.job.compare}</option>
+      {others.slice(0, 50).map((one) => (
+        <option key={one.id} value={one.id}>
+          {one.name}
+        </option>
+      ))}
+    </select>
+  );
+}
+
 function JobActions(props: { readonly job: Job }) {
   const { job } = props;
-  const finished = job.state === 'ready' || job.state === 'done';
+  const finished = isFinished(job);
   return (
     <div class="buttons">
       {finished && (
@@ -36,6 +67,19 @@ function JobActions(props: { readonly job: Job }) {
           {t.files.package}
         </a>
       )}
+      {finished && job.summary !== null && (
+        <a class="button" href={formatRoute({ page: 'guide', id: job.id })}>
+          <Icon name="book" />
+          {t.guide.open}
+        </a>
+      )}
+      {job.actions.includes('recompute') && (
+        <button type="button" class="button" onClick={() => weaveAgain(job)}>
+          <Icon name="edit" />
+          {t.job.change}
+        </button>
+      )}
+      <CompareWith job={job} />
       {job.actions.includes('cancel') && (
         <button type="button" class="button" onClick={() => void attempt(() => removeJob(job.id))}>
           {t.job.cancel}
@@ -155,7 +199,7 @@ export function JobPage(props: { readonly id: string }) {
     void attempt(async () => receive({ type: 'job', seq: null, job: await getJob(id) }));
   }, [id, job === undefined, known]);
   if (job === undefined) return <p class="page quiet empty">{known ? t.job.missing : t.jobs.loading}</p>;
-  const finished = job.state === 'ready' || job.state === 'done';
+  const finished = isFinished(job);
   return (
     <div class="page job-page">
       <a class="back" href="#/">

@@ -13,8 +13,10 @@ import { draft, feed } from '../state/store.ts';
 import { forget, type Sending, sendings } from '../state/uploads.ts';
 import { Bar, Chip } from './controls.tsx';
 import { ChooseFile } from './drop.tsx';
-import { NewJob } from './new_job.tsx';
+import { lazy } from './lazy.tsx';
 import { Swatch } from './swatch.tsx';
+
+const NewJob = lazy(() => import('./draft/new_job.tsx').then((form) => form.NewJob));
 
 function Hero() {
   return (
@@ -98,7 +100,7 @@ export function JobsPage() {
   const rows = jobs.length + sendings.value.length;
   return (
     <div class="page jobs-page">
-      {draft.value.files.length === 0 ? <Hero /> : <NewJob />}
+      {draft.value.files.length === 0 && draft.value.again === null ? <Hero /> : <NewJob />}
       <section class="jobs" aria-label={t.jobs.title}>
         <h2>{t.jobs.title}</h2>
         {rows === 0 ? (

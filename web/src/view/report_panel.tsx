@@ -1,11 +1,13 @@
 // The report's figures.
 
-import { duration, figure } from '../lib/format.ts';
+import { count, duration, figure } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
-import type { QualityName, ReportFigures } from '../state/report.ts';
+import type { HeatName } from '../state/heat.ts';
+import type { QualityName, QualityRow, ReportFigures } from '../state/report.ts';
 import { Panel } from './controls.tsx';
+import { shownHeat } from './model/model_panel.tsx';
 
-function measure(name: QualityName, value: number | null): string {
+export function measure(name: QualityName, value: number | null): string {
   if (value === null) return '–';
   return `${figure(value)}${name.endsWith('_deg') ? '°' : ' %'}`;
 }
@@ -45,6 +47,65 @@ function Facts(props: { readonly facts: ReportFigures['facts'] }) {
   );
 }
 
+// Which heat map shows where a figure comes from.
+const kHeatOf: Readonly<Partial<Record<QualityName, HeatName>>> = {
+  angle_deviation_deg: 'angle',
+  surface_distance_percent: 'distance',
+  area_distortion_percent: 'area',
+  planarity_percent: 'planarity',
+};
+
+function RowName(props: { readonly name: QualityName }) {
+  const label = t.report.rows[props.name];
+  const heat = kHeatOf[props.name];
+  if (heat === undefined) return <>{label}</>;
+  return (
+    <button type="button" class="link" title={t.report.show(label)} onClick={() => (shownHeat.value = heat)}>
+      {label}
+    </button>
+  );
+}
+
+function CylinderTable(props: { readonly figures: ReportFigures }) {
+  const { cylinders, quality } = props.figures;
+  if (cylinders.length < 2) return null;
+  const largest = (rows: readonly QualityRow[], name: QualityName): string => {
+    const row = rows.find((one) => one.name === name);
+    return `${measure(name, row?.average ?? null)} / ${measure(name, row?.largest ?? null)}`;
+  };
+  return (
+    <details class="by-cylinder">
+      <summary>{t.report.perCylinder}</summary>
+      <div class="table-box" tabIndex={0} role="region" aria-label={t.report.perCylinder}>
+        <table>
+          <thead>
+            <tr>
+              <th scope="col">{t.foliation.cylinders}</th>
+              <th scope="col">{t.report.quads}</th>
+              {quality.map(({ name }) => (
+                <th key={name} scope="col">
+                  {t.report.rows[name]}
+                </th>
+              ))}
+            </tr>
+          </thead>
+          <tbody>
+            {cylinders.map((one) => (
+              <tr key={one.cylinder}>
+                <th scope="row">{t.report.cylinder(count(one.cylinder + 1))}</th>
+                <td>{count(one.quads)}</td>
+                {quality.map(({ name }) => (
+                  <td key={name}>{largest(one.quality, name)}</td>
+                ))}
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </div>
+    </details>
+  );
+}
+
 export function ReportPanel(props: { readonly figures: ReportFigures }) {
   const { quality, facts } = props.figures;
   return (
@@ -63,7 +124,9 @@ export function ReportPanel(props: { readonly figures: ReportFigures }) {
           <tbody>
             {quality.map((row) => (
               <tr key={row.name}>
-                <th scope="row">{t.report.rows[row.name]}</th>
+                <th scope="row">
+                  <RowName name={row.name} />
+                </th>
                 <td>{measure(row.name, row.average)}</td>
                 <td>{measure(row.name, row.largest)}</td>
               </tr>
@@ -71,6 +134,7 @@ export function ReportPanel(props: { readonly figures: ReportFigures }) {
           </tbody>
         </table>
       )}
+      <CylinderTable figures={props.figures} />
       <Facts facts={facts} />
     </Panel>
   );

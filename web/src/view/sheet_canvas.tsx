@@ -159,6 +159,8 @@ export function SheetCanvas(props: {
   readonly burnt: Burnt | null;
   readonly hot: boolean;
   readonly about: ComponentChildren; // Said below the drawing.
+  readonly over?: ComponentChildren; // Lies over it.
+  readonly children?: ComponentChildren; // Buttons beside those for zooming.
 }) {
   const { sheet, burnt, hot } = props;
   const box = useMemo(() => ({ x: 0, y: 0, width: sheet.widthMm, height: sheet.heightMm }), [sheet]);
@@ -194,10 +196,14 @@ export function SheetCanvas(props: {
           {burnt !== null && <Burn burnt={burnt} hot={hot} scale={view.width / 400} />}
         </g>
       </svg>
+      {props.over}
       </div>
       <div class="view-foot">
         {props.about}
-        <ZoomButtons fitLabel={t.sheets.fit} onZoom={zoom} onFit={() => setView(fit(box))} />
+        <span class="view-buttons">
+          {props.children}
+          <ZoomButtons fitLabel={t.sheets.fit} onZoom={zoom} onFit={() => setView(fit(box))} />
+        </span>
       </div>
     </>
   );

@@ -5,10 +5,12 @@ import { useEffect, useState } from 'preact/hooks';
 import type { Cut, Job } from '../api/types.ts';
 import { figure } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
-import { type Burnt, type BurnPlan, burntSoFar } from '../state/burn.ts';
+import { burntAt, type Burnt, type BurnPlan, burntSoFar } from '../state/burn.ts';
 import { type JobPackage, loadBurnPlan, shownSheet } from '../state/package_store.ts';
 import { materialName } from '../state/store.ts';
 import { Panel, Segmented } from './controls.tsx';
+import { Icon } from './icons.tsx';
+import { Playback } from './playback.tsx';
 import { SheetCanvas } from './sheet_canvas.tsx';
 
 // How the machine has got on with `sheet`: nothing, part of it, or all.
@@ -18,10 +20,8 @@ function burntShare(sheet: number, job: Job, cut: Cut | null): Cut['progress'] |
   return isCut ? { linesTotal: 1, linesSent: 1, linesAcknowledged: 1, fraction: 1 } : null;
 }
 
-function useBurnt(sheet: number, job: Job, cut: Cut | null): Burnt | null {
+function usePlan(sheet: number, job: Job, wanted: boolean): BurnPlan | null {
   const [plan, setPlan] = useState<{ readonly sheet: number; readonly plan: BurnPlan } | null>(null);
-  const share = burntShare(sheet, job, cut);
-  const wanted = share !== null;
   useEffect(() => {
     let gone = false;
     if (wanted) {
@@ -34,7 +34,7 @@ function useBurnt(sheet: number, job: Job, cut: Cut | null): Burnt | null {
       gone = true;
     };
   }, [job.id, sheet, wanted]);
-  return share === null || plan === null || plan.sheet !== sheet ? null : burntSoFar(plan.plan, share);
+  return plan === null || plan.sheet !== sheet ? null : plan.plan;
 }
 
 export function SheetPanel(props: { readonly job: Job; readonly content: JobPackage; readonly cut: Cut | null }) {
@@ -44,8 +44,13 @@ export function SheetPanel(props: { readonly job: Job; readonly content: JobPack
     if (cutSheet !== undefined && cutSheet > 0) shownSheet.value = cutSheet;
   }, [cutSheet]);
   const sheet = content.sheets.find((one) => one.id === shownSheet.value) ?? content.sheets[0];
-  const burnt = useBurnt(sheet?.id ?? 0, job, cut);
+  const [seconds, setSeconds] = useState<number | null>(null); // Of the recording; null: none is played.
+  const share = sheet === undefined ? null : burntShare(sheet.id, job, cut);
+  const plan = usePlan(sheet?.id ?? 0, job, share !== null || seconds !== null);
+  useEffect(() => setSeconds(null), [sheet?.id]);
   if (sheet === undefined) return null;
+  const played = plan === null || seconds === null ? null : burntAt(plan, seconds);
+  const burnt: Burnt | null = played ?? (plan === null || share === null ? null : burntSoFar(plan, share));
   const isCut = (id: number): boolean => job.sheets.some((one) => one.id === id && one.state === 'cut');
   const choices = content.sheets.map(({ id }) => ({ value: id, label: String(id), class: isCut(id) ? 'is-cut' : '' }));
   return (
@@ -59,7 +64,7 @@ export function SheetPanel(props: { readonly job: Job; readonly content: JobPack
       <SheetCanvas
         sheet={sheet}
         burnt={burnt}
-        hot={cut?.state === 'cutting' && cut.sheet === sheet.id}
+        hot={played !== null || (cut?.state === 'cutting' && cut.sheet === sheet.id)}
         about={
           <p class="sheet-about quiet">
             {t.sheets.one(sheet.id)} · {materialName(sheet.material)} ·{' '}
@@ -67,7 +72,19 @@ export function SheetPanel(props: { readonly job: Job; readonly content: JobPack
             {isCut(sheet.id) && <span class="tag">{t.sheets.cut}</span>}
           </p>
         }
-      />
+        over={
+          plan !== null && seconds !== null ? (
+            <Playback plan={plan} seconds={seconds} line={played?.line ?? 0} onSeek={setSeconds} onClose={() => setSeconds(null)} />
+          ) : null
+        }
+      >
+        {seconds === null && (
+          <button type="button" class="button small" onClick={() => setSeconds(0)}>
+            <Icon name="play" />
+            {t.sheets.play}
+          </button>
+        )}
+      </SheetCanvas>
     </Panel>
   );
 }

@@ -54,7 +54,9 @@ export function quadsOf(from: BufferGeometry, quads: readonly number[]): BufferG
   const indices = new Uint32Array(quads.length * each);
   quads.forEach((quad, k) => indices.set(all.slice(quad * each, (quad + 1) * each), k * each));
   const geometry = new BufferGeometry();
-  for (const name of ['position', 'normal'] as const) geometry.setAttribute(name, from.getAttribute(name));
+  for (const name of ['position', 'normal', 'color'] as const) {
+    if (from.hasAttribute(name)) geometry.setAttribute(name, from.getAttribute(name));
+  }
   geometry.setIndex(new BufferAttribute(indices, 1));
   return geometry;
 }

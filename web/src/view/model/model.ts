@@ -13,14 +13,18 @@ import {
 } from 'three';
 
 import type { SolidModel } from '../../api/glb.ts';
-import type { CriticalGraph, Family, QuadMesh } from '../../api/package_files.ts';
+import type { CriticalGraph, Family, QuadMesh, TriangleMesh } from '../../api/package_files.ts';
 import { buildRibbons } from '../../state/ribbons.ts';
 import type { StripIndex } from '../../state/strip_index.ts';
 import { CriticalLines } from './critical_lines.ts';
+import { cylinderColours } from '../../state/heat.ts';
 import { edgeGeometry, quadsOf, ribbonGeometry, stepsFor, surfaceGeometry } from './geometry.ts';
+import { ColouredQuads, InputSurface, Leaves } from './overlays.ts';
+import type { Palette } from './palette.ts';
 import { Solid } from './solid.ts';
 
-export type ViewMode = 'woven' | 'solid' | 'weft' | 'warp' | 'surface';
+export const kViewModes = ['woven', 'solid', 'weft', 'warp', 'quads', 'cylinders', 'heat', 'surface', 'leaves'] as const;
+export type ViewMode = (typeof kViewModes)[number];
 
 export interface ModelContent {
   readonly mesh: QuadMesh;
@@ -29,14 +33,7 @@ export interface ModelContent {
   readonly critical: CriticalGraph;
 }
 
-export interface Palette {
-  readonly weft: string;
-  readonly warp: string;
-  readonly surface: string;
-  readonly line: string;
-  readonly mark: string;
-  readonly critical: string;
-}
+const kRibbonModes: ReadonlySet<ViewMode> = new Set(['woven', 'weft', 'warp']);
 
 function marker(): Mesh<BufferGeometry, MeshLambertMaterial> {
   const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 });
@@ -60,7 +57,11 @@ export class Model {
   // A geometry shares its vertices with what it marks, and freeing it would free those too: kept for each
   // strip that was ever marked, which adds up to one more index of the ribbons at most.
   private readonly marked = new Map<string, BufferGeometry>();
-  private solid: Solid | null = null; // Fetched when it is first looked at.
+  private solid: Solid | null = null; // This and the next are fetched when they are first looked at.
+  private input: InputSurface | null = null;
+  private coloured: ColouredQuads | null = null; // Made then.
+  private leaves: Leaves | null = null;
+  private heat: Float32Array | null = null;
   private marks: readonly [string | null, string | null] = [null, null];
   private palette: Palette | null = null;
   mode: ViewMode = 'woven';
@@ -88,11 +89,49 @@ export class Model {
     this.mode = mode;
     this.parts.weft.visible = mode === 'woven' || mode === 'weft';
     this.parts.warp.visible = mode === 'woven' || mode === 'warp';
-    this.skin.visible = mode === 'surface';
-    this.edges.visible = mode === 'surface';
+    const onInput = mode === 'surface' || mode === 'leaves';
+    this.skin.visible = mode === 'quads' || (onInput && this.input === null);
+    this.edges.visible = mode === 'quads' || mode === 'cylinders' || mode === 'heat';
+    if (this.input !== null) this.input.mesh.visible = onInput;
+    this.showColours(mode);
+    this.showLeaves(mode === 'leaves');
     if (this.solid !== null) this.solid.root.visible = mode === 'solid';
     // Its own lines would lie inside the slabs.
     this.critical.root.visible = mode !== 'solid';
+  }
+
+  private showColours(mode: ViewMode): void {
+    const colours = mode === 'cylinders' ? cylinderColours(this.content.mesh) : mode === 'heat' ? this.heat : null;
+    if (colours !== null && this.coloured === null) {
+      this.coloured = new ColouredQuads(this.content.mesh);
+      this.root.add(this.coloured.mesh);
+    }
+    if (this.coloured === null) return;
+    this.coloured.mesh.visible = colours !== null;
+    if (colours !== null) this.coloured.colour(colours);
+  }
+
+  private showLeaves(visible: boolean): void {
+    if (visible && this.leaves === null) {
+      this.leaves = new Leaves(this.content.critical);
+      this.root.add(this.leaves.root);
+      if (this.palette !== null) this.leaves.paint(this.palette);
+    }
+    if (this.leaves !== null) this.leaves.root.visible = visible;
+  }
+
+  // Colours per corner of every quad, for the mode "heat".
+  setHeat(colours: Float32Array): void {
+    this.heat = colours;
+    this.show(this.mode);
+  }
+
+  addInput(surface: TriangleMesh): void {
+    if (this.input !== null) return;
+    this.input = new InputSurface(surface);
+    this.root.add(this.input.mesh);
+    if (this.palette !== null) this.input.mesh.material.color.set(this.palette.surface);
+    this.show(this.mode);
   }
 
   addSolid(model: SolidModel): void {
@@ -116,7 +155,7 @@ export class Model {
     const strip = id === null ? undefined : this.content.index.strips.get(id);
     mesh.visible = strip !== undefined;
     if (strip === undefined) return;
-    const onSurface = this.mode === 'surface';
+    const onSurface = !kRibbonModes.has(this.mode);
     const key = `${onSurface ? 'surface' : 'ribbon'}/${strip.id}`;
     const geometry = this.marked.get(key) ?? quadsOf(onSurface ? this.surface : this.ribbons[strip.family], strip.quads);
     this.marked.set(key, geometry);
@@ -126,6 +165,8 @@ export class Model {
   paint(palette: Palette): void {
     this.palette = palette;
     this.solid?.paint(palette.mark);
+    this.leaves?.paint(palette);
+    this.input?.mesh.material.color.set(palette.surface);
     this.parts.weft.material.color.set(palette.weft);
     this.parts.warp.material.color.set(palette.warp);
     this.skin.material.color.set(palette.surface);
@@ -149,6 +190,6 @@ export class Model {
     for (const mesh of [this.parts.weft, this.parts.warp, this.skin, this.pointed, this.chosen]) mesh.material.dispose();
     this.edges.material.dispose();
     this.critical.dispose();
-    this.solid?.dispose();
+    for (const part of [this.solid, this.input, this.coloured, this.leaves]) part?.dispose();
   }
 }

@@ -4,12 +4,16 @@
 import { DoubleSide, Mesh, MeshBasicMaterial, Raycaster, Vector2 } from 'three';
 
 import type { SolidModel } from '../../api/glb.ts';
-import { Model, type ModelContent, type Palette, type ViewMode } from './model.ts';
+import type { TriangleMesh } from '../../api/package_files.ts';
+import { Model, type ModelContent, type ViewMode } from './model.ts';
+import type { Palette } from './palette.ts';
 import { Stage } from './stage.ts';
 
 export interface ModelScene {
   show(mode: ViewMode): void;
   addSolid(model: SolidModel): void;
+  addInput(surface: TriangleMesh): void;
+  setHeat(colours: Float32Array): void; // Per corner of every quad.
   mark(pointed: string | null, chosen: string | null): void;
   stripAt(clientX: number, clientY: number): string | null;
   turn(dx: number, dy: number): void; // Radians.
@@ -22,7 +26,7 @@ export interface ModelScene {
 // Throws if the browser has no WebGL.
 export function createModelScene(canvas: HTMLCanvasElement, content: ModelContent): ModelScene {
   const model = new Model(content);
-  const stage = new Stage(canvas, model.bounds);
+  const stage = new Stage(canvas, model.bounds, content.mesh.positions);
   stage.scene.add(model.root);
   const target = new Mesh(model.surface, new MeshBasicMaterial({ side: DoubleSide }));
   const raycaster = new Raycaster();
@@ -44,6 +48,8 @@ export function createModelScene(canvas: HTMLCanvasElement, content: ModelConten
 
   return {
     show: drawn((mode: ViewMode) => model.show(mode)),
+    addInput: drawn((surface: TriangleMesh) => model.addInput(surface)),
+    setHeat: drawn((colours: Float32Array) => model.setHeat(colours)),
     addSolid: drawn((solid: SolidModel) => model.addSolid(solid)),
     mark: drawn((pointed: string | null, chosen: string | null) => model.mark(pointed, chosen)),
     paint: drawn((palette: Palette) => model.paint(palette)),

@@ -5,6 +5,8 @@ import { AmbientLight, DirectionalLight, PerspectiveCamera, Scene, Sphere, Spher
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 const kFieldDeg = 32;
+const kMostSamples = 4000;
+const kAir = 1.06;
 const kFromDirection = new Vector3(0.55, -0.95, 0.75).normalize();
 
 // Throws if the browser has no WebGL.
@@ -16,7 +18,11 @@ export class Stage {
   private readonly resizing: ResizeObserver;
   private frame = 0;
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly bounds: Sphere) {
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly bounds: Sphere,
+    private readonly points: ArrayLike<number>, // x y z of what has to be seen whole.
+  ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.camera.up.set(0, 0, 1);
@@ -53,12 +59,33 @@ export class Stage {
   }
 
   reset(): void {
+    this.lookFrom(kFromDirection);
+  }
+
+  // How far from the middle the camera must be to see everything, with a little air.
+  private distanceFor(direction: Vector3): number {
     const { center, radius } = this.bounds;
-    const half = Math.atan(Math.tan((kFieldDeg * Math.PI) / 360) * Math.min(1, this.camera.aspect));
-    const distance = (radius / Math.sin(half)) * 1.02;
+    const right = new Vector3().crossVectors(this.camera.up, direction).normalize();
+    const up = new Vector3().crossVectors(direction, right);
+    const high = Math.tan((kFieldDeg * Math.PI) / 360);
+    const wide = high * this.camera.aspect;
+    let distance = radius * 1.2;
+    const step = 3 * Math.max(1, Math.floor(this.points.length / 3 / kMostSamples));
+    for (let at = 0; at + 2 < this.points.length; at += step) {
+      const away = new Vector3(this.points[at], this.points[at + 1], this.points[at + 2]).sub(center);
+      const near = away.dot(direction);
+      distance = Math.max(distance, near + Math.abs(away.dot(up)) / high, near + Math.abs(away.dot(right)) / wide);
+    }
+    return distance * kAir;
+  }
+
+  // The whole model, seen from that direction (a unit vector).
+  lookFrom(direction: Vector3): void {
+    const { center, radius } = this.bounds;
+    const distance = this.distanceFor(direction);
     this.camera.near = distance / 100;
     this.camera.far = distance * 20;
-    this.camera.position.copy(center).addScaledVector(kFromDirection, distance);
+    this.camera.position.copy(center).addScaledVector(direction, distance);
     this.camera.updateProjectionMatrix();
     this.controls.target.copy(center);
     this.controls.minDistance = radius * 0.2;

@@ -1,0 +1,39 @@
+// Cuts in SQLite.
+
+#pragma once
+
+#include "server/store/cut_store.h"
+
+namespace leafcutter::server {
+
+class Database;
+
+class SqliteCutStore final : public CutStore {
+public:
+    explicit SqliteCutStore(Database& database) : database_(database) {}
+
+    std::vector<CutRecord> add(const std::string& job, const std::vector<CutWish>& wishes) override;
+    std::optional<CutRecord> find(const std::string& id) const override;
+    std::vector<CutRecord> list(int limit) const override;
+    std::vector<CutRecord> open_on(const std::string& device) const override;
+    bool move(const std::string& id,
+              CutState from,
+              CutState to,
+              const std::string& reason) override;
+    bool arm(const CutRecord& cut) override;
+    bool begin_sheet(const CutRecord& cut) override;
+    bool finish_sheet(const CutRecord& cut, const CutProgress& progress) override;
+    void record_progress(const std::string& id, const CutProgress& progress) override;
+    void record_beam(const std::string& id, const BeamRecord& beam) override;
+    bool may_be_finished(const CutRecord& cut) const override;
+    std::optional<CutRecord> add_rest(const CutRecord& of,
+                                      const std::string& program_sha256) override;
+    std::optional<CutRecord> last_begun_on(const std::string& device) const override;
+    std::int64_t count(CutState state) const override;
+    std::vector<std::string> recover() override;
+
+private:
+    Database& database_;
+};
+
+}  // namespace leafcutter::server

@@ -1,0 +1,188 @@
+#include "server/store/sqlite/engine.h"
+
+#include <algorithm>
+#include <sqlite3.h>
+#include <utility>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+#include "server/crash_point.h"
+#include "server/store/durable_file.h"
+#include "server/store/ids.h"
+#include "server/store/sqlite/accounts.h"
+#include "server/store/sqlite/cuts.h"
+#include "server/store/sqlite/database.h"
+#include "server/store/sqlite/devices.h"
+#include "server/store/sqlite/errors.h"
+#include "server/store/sqlite/events.h"
+#include "server/store/sqlite/jobs.h"
+#include "server/store/sqlite/named_records.h"
+#include "server/store/sqlite/rescue.h"
+#include "server/store/sqlite/schema.h"
+#include "server/store/sqlite/settings.h"
+#include "server/store/sqlite/stock.h"
+#include "server/store/store_error.h"
+
+namespace leafcutter::server {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+class SqliteEngine final : public Engine {
+public:
+    explicit SqliteEngine(std::unique_ptr<Database> database)
+        : database_(std::move(database)),
+          jobs_(*database_),
+          cuts_(*database_),
+          devices_(*database_),
+          stock_(*database_),
+          materials_(*database_, "material"),
+          presets_(*database_, "preset"),
+          settings_(*database_),
+          events_(*database_),
+          accounts_(*database_) {}
+
+    JobStore& jobs() override { return jobs_; }
+    CutStore& cuts() override { return cuts_; }
+    DeviceStore& devices() override { return devices_; }
+    StockStore& stock() override { return stock_; }
+    NamedRecords& materials() override { return materials_; }
+    NamedRecords& presets() override { return presets_; }
+    Settings& settings() override { return settings_; }
+    EventLog& events() override { return events_; }
+    AccountStore& accounts() override { return accounts_; }
+    QueueAges queue_ages() const override;
+    const LatencyHistogram* commit_latency() const override { return database_->commit_latency(); }
+
+    std::string trouble() const override { return database_->trouble(); }
+    std::string check() const override;
+    void back_up_to(const fs::path& file) const override;
+
+private:
+    std::unique_ptr<Database> database_;
+    SqliteJobStore jobs_;
+    SqliteCutStore cuts_;
+    SqliteDeviceStore devices_;
+    SqliteStockStore stock_;
+    SqliteNamedRecords materials_;
+    SqliteNamedRecords presets_;
+    SqliteSettings settings_;
+    SqliteEventLog events_;
+    SqliteAccountStore accounts_;
+};
+
+std::int64_t age_of(SQLite::Database& database, const char* query) {
+    const SQLite::Column oldest = database.execAndGet(query);
+    return oldest.isNull() ? 0 : std::max<std::int64_t>(0, wall_clock_ms() - oldest.getInt64());
+}
+
+QueueAges SqliteEngine::queue_ages() const {
+    QueueAges ages;
+    database_->read([&ages](SQLite::Database& reader) {
+        ages.oldest_job_ms =
+            age_of(reader, "SELECT min(created_ms) FROM job WHERE state = 'queued'");
+        ages.oldest_cut_ms =
+            age_of(reader, "SELECT min(created_ms) FROM cut WHERE state = 'waiting'");
+    });
+    return ages;
+}
+
+std::string SqliteEngine::check() const {
+    std::string damage;
+    try {
+        damage = quick_check(*open_reader(database_->file()));
+    } catch (const SQLite::Exception& error) {
+        damage = error.what();
+    }
+    if (!damage.empty()) {
+        database_->note_damage(fmt::format(
+            "the database is damaged ({}): nothing is changed any more; start the daemon again, "
+            "and it takes the newest good backup",
+            damage));
+    }
+    return damage;
+}
+
+// In one step: a reader's view stays the same however long it takes, and nobody waits for it.
+void copy_rows(SQLite::Database& from, SQLite::Database& to) {
+    sqlite3_backup* copying = sqlite3_backup_init(to.getHandle(), "main", from.getHandle(), "main");
+    if (copying == nullptr) {
+        throw SQLite::Exception(to.getHandle());
+    }
+    const int code = sqlite3_backup_step(copying, -1);
+    sqlite3_backup_finish(copying);
+    if (code != SQLITE_DONE) {
+        throw SQLite::Exception(to.getHandle(), code);
+    }
+}
+
+void SqliteEngine::back_up_to(const fs::path& file) const {
+    const fs::path part = file.string() + ".part";
+    try {
+        fs::remove(part);
+        {
+            SQLite::Database copy(part.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+            copy_rows(*open_reader(database_->file()), copy);
+            // One file, without a journal beside it.
+            copy.exec("PRAGMA journal_mode = DELETE");
+            const std::string damage = quick_check(copy);
+            if (!damage.empty()) {
+                throw StoreError(StoreTrouble::Damaged, damage);
+            }
+        }
+        sync_file(part);
+        crash_point("backup.before-rename");
+        rename_durably(part, file);
+        crash_point("backup.after-rename");
+    } catch (const SQLite::Exception& error) {
+        fs::remove(part);
+        throw store_error_of(error);
+    } catch (const std::system_error& error) {
+        throw StoreError(StoreTrouble::Failed, error.what());
+    }
+}
+
+// Whoever migrates keeps what there was: a migration can't be undone.
+void keep_before_migration(const fs::path& file, const fs::path& backups) {
+    int version = 0;
+    {
+        SQLite::Database database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
+                                  5000);
+        version = schema_version(database);
+    }
+    if (version == 0 || version >= newest_schema()) {
+        return;
+    }
+    const SqliteEngine old(std::make_unique<Database>(file, "read before it is migrated"));
+    old.back_up_to(backups / fmt::format("{}-schema-{}.db", rfc3339(wall_clock_ms()), version));
+}
+
+}  // namespace
+
+OpenedEngine open_sqlite(const fs::path& folder,
+                         const fs::path& backups,
+                         std::function<void()> after_commit) {
+    const fs::path file = folder / "leafcutter.db";
+    fs::create_directories(backups);
+    const Rescue rescue = make_usable(file, backups);
+    OpenedEngine opened;
+    opened.notice = rescue.notice;
+    opened.restored = rescue.restored;
+    if (!rescue.trouble.empty()) {
+        opened.engine =
+            std::make_unique<SqliteEngine>(std::make_unique<Database>(file, rescue.trouble));
+        return opened;
+    }
+    try {
+        keep_before_migration(file, backups);
+        opened.engine = std::make_unique<SqliteEngine>(
+            std::make_unique<Database>(file, std::move(after_commit)));
+    } catch (const SQLite::Exception& error) {
+        throw DatabaseUnusable(fmt::format("{} can't be opened: {}", file.string(), error.what()));
+    }
+    return opened;
+}
+
+}  // namespace leafcutter::server

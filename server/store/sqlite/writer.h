@@ -1,0 +1,70 @@
+// The only connection that writes, and the only one that checkpoints, on a thread of its own. What
+// waits is committed together: one sync to disk carries many requests.
+
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/latency_histogram.h"
+
+namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
+class Database;
+}
+
+namespace leafcutter::server {
+
+class Writer {
+public:
+    // Opens the database or creates it, and brings its schema up to date. `after_commit` is called
+    // by the writer's thread after every group. Throws DatabaseUnusable, SQLite::Exception.
+    Writer(const std::filesystem::path& file, std::function<void()> after_commit);
+    ~Writer();
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+
+    // Runs `work` inside a transaction and returns when it is on disk. Work that throws is rolled
+    // back alone, and what it threw is thrown here; SQLite's errors as StoreError.
+    void run(const std::function<void(SQLite::Database&)>& work);
+
+    // Not empty after the disk failed a commit, or after give_up(): nothing more is written.
+    std::string trouble() const;
+    void give_up(const std::string& what);
+
+    // Of every group's commit, sync included.
+    const LatencyHistogram& commit_latency() const { return commit_latency_; }
+
+private:
+    struct Request;
+
+    void loop(const std::stop_token& stop);
+    void commit_group(const std::vector<Request*>& group);
+    void checkpoint_if_due();
+    void wait_until_done(Request& request);
+
+    const std::filesystem::path file_;
+    std::unique_ptr<SQLite::Database> database_;  // Of the thread alone, once it runs.
+    std::function<void()> after_commit_;
+    int groups_since_checkpoint_ = 0;
+    LatencyHistogram commit_latency_;
+
+    mutable std::mutex mutex_;  // Guards the members below.
+    std::condition_variable_any arrived_;
+    std::condition_variable finished_;
+    std::vector<Request*> waiting_;
+    std::string trouble_;
+    bool closed_ = false;
+
+    std::jthread thread_;  // Last: it uses everything above.
+};
+
+}  // namespace leafcutter::server

@@ -1,0 +1,142 @@
+// Sheets and remnants at hand, drawn to one scale.
+
+import { useEffect, useState } from 'preact/hooks';
+
+import type { Point } from '../../api/package_files.ts';
+import { listStock, putStock, removeStock, type StockItem } from '../../api/workshop.ts';
+import { count, figure } from '../../lib/format.ts';
+import { t } from '../../messages/messages.ts';
+import { formatRoute } from '../../state/route.ts';
+import { pathData } from '../../state/sheets.ts';
+import { attempt, feed, loadMaterials, materialName, materials } from '../../state/store.ts';
+import { AskButton } from '../controls.tsx';
+import { Dialog, DialogButtons } from '../dialog.tsx';
+import { idFor, numberOf, SelectField, TextField } from '../fields.tsx';
+import { Icon } from '../icons.tsx';
+import { PageTabs } from '../tabs.tsx';
+import { useCall } from '../use_call.ts';
+
+function rectangle(width: number, height: number): readonly Point[] {
+  return [[0, 0], [width, 0], [width, height], [0, height]];
+}
+
+export function StockPicture(props: { readonly item: StockItem; readonly scaleMm: number }) {
+  const { item, scaleMm } = props;
+  const outline = item.outline.length > 0 ? item.outline : rectangle(item.widthMm, item.heightMm);
+  const low = (axis: 0 | 1): number => Math.min(...outline.map((at) => at[axis]));
+  const rings = [outline, ...item.holes].map((ring) => `${pathData(ring)}Z`).join('');
+  const colour = materials.value.find((one) => one.id === item.material)?.colour ?? '#bbbbbb';
+  return (
+    <svg class="stock-picture" viewBox={`0 0 ${scaleMm} ${item.heightMm + 4}`} aria-hidden="true">
+      <g transform={`translate(${2 - low(0)} ${item.heightMm + 2 + low(1)}) scale(1 -1)`}>
+        <path d={rings} fill={colour} fill-rule="evenodd" />
+      </g>
+    </svg>
+  );
+}
+
+function StockCard(props: { readonly item: StockItem; readonly scaleMm: number; readonly onChange: () => void }) {
+  const { item, scaleMm, onChange } = props;
+  const job = feed.value.jobs.get(item.fromJob);
+  const many = item.quantity === null ? t.stock.endless : t.stock.pieces(item.quantity);
+  const remove = (): void => {
+    void attempt(async () => {
+      await removeStock(item.id);
+      onChange();
+    });
+  };
+  return (
+    <li class="panel stock-card">
+      <StockPicture item={item} scaleMm={scaleMm} />
+      <h2>{item.material === '' ? t.stock.any : materialName(item.material)}</h2>
+      <p class="quiet">
+        {t.sheets.size(figure(item.widthMm, 4), figure(item.heightMm, 4))} · {item.outline.length > 0 ? t.stock.remnant : many}
+        {item.planned > 0 && ` · ${t.stock.planned(count(item.planned))}`}
+      </p>
+      {item.note !== '' && <p>{item.note}</p>}
+      <div class="buttons">
+        {item.fromJob !== '' && (
+          <a class="button small" href={formatRoute({ page: 'job', id: item.fromJob })}>
+            {job?.name ?? item.fromJob}
+          </a>
+        )}
+        <AskButton class="button small" label={t.remove} question={t.job.reallyRemove} onConfirm={remove} />
+      </div>
+    </li>
+  );
+}
+
+function StockForm(props: { readonly taken: readonly string[]; readonly onClose: () => void; readonly onDone: () => void }) {
+  const { taken, onClose, onDone } = props;
+  const [material, setMaterial] = useState(materials.value[0]?.id ?? '');
+  const [width, setWidth] = useState('600');
+  const [height, setHeight] = useState('400');
+  const [quantity, setQuantity] = useState('1');
+  const [busy, setBusy] = useState(false);
+  const [w, h, q] = [numberOf(width), numberOf(height), numberOf(quantity)];
+  const can = w !== null && w > 0 && h !== null && h > 0 && q !== null && Number.isInteger(q) && q > 0;
+  const save = async (): Promise<void> => {
+    setBusy(true);
+    const wish = { material, widthMm: w ?? 0, heightMm: h ?? 0, quantity: q ?? 1 };
+    const done = await attempt(() => putStock(idFor(`${material}-${width}x${height}`, taken), wish));
+    setBusy(false);
+    if (!done) return;
+    onDone();
+    onClose();
+  };
+  return (
+    <Dialog title={t.stock.add} onClose={onClose}>
+      <form
+        class="dialog-form"
+        onSubmit={(event) => {
+          event.preventDefault();
+          if (can) void save();
+        }}
+      >
+        <SelectField
+          label={t.stock.material}
+          value={material}
+          choices={materials.value.map((one) => ({ value: one.id, label: one.name }))}
+          onChange={setMaterial}
+        />
+        <div class="measures">
+          <TextField label={t.materials.fields.width} value={width} onInput={setWidth} unit="mm" decimal bad={w === null} />
+          <TextField label={t.materials.fields.height} value={height} onInput={setHeight} unit="mm" decimal bad={h === null} />
+          <TextField label={t.stock.quantity} value={quantity} onInput={setQuantity} decimal bad={q === null} />
+        </div>
+        <DialogButtons busy={busy} can={can} label={t.save} onClose={onClose} />
+      </form>
+    </Dialog>
+  );
+}
+
+export function StockPage() {
+  const [called, load] = useCall(listStock);
+  const [adding, setAdding] = useState(false);
+  useEffect(() => void loadMaterials().catch(() => undefined), []);
+  const items = called.state === 'there' ? called.value : [];
+  const scaleMm = Math.max(100, ...items.map((item) => item.widthMm)) + 4;
+  return (
+    <div class="page">
+      <PageTabs label={t.nav.materials} pages={['materials', 'stock']} />
+      <header class="page-head">
+        <h1>{t.tabs.stock}</h1>
+        {called.state === 'there' && (
+          <button type="button" class="button" onClick={() => setAdding(true)}>
+            <Icon name="plus" />
+            {t.stock.add}
+          </button>
+        )}
+      </header>
+      {called.state === 'failed' && <p class="quiet empty">{called.fault}</p>}
+      {called.state === 'loading' && <p class="quiet empty">{t.jobs.loading}</p>}
+      {called.state === 'there' && items.length === 0 && <p class="quiet empty">{t.stock.none}</p>}
+      <ul class="stock-list">
+        {items.map((item) => (
+          <StockCard key={item.id} item={item} scaleMm={scaleMm} onChange={() => void load()} />
+        ))}
+      </ul>
+      {adding && <StockForm taken={items.map((item) => item.id)} onClose={() => setAdding(false)} onDone={() => void load()} />}
+    </div>
+  );
+}

@@ -1,0 +1,23 @@
+// The colours of the page's scheme, for 3D views.
+
+export interface Palette {
+  readonly weft: string;
+  readonly warp: string;
+  readonly surface: string;
+  readonly line: string;
+  readonly mark: string;
+  readonly critical: string;
+}
+
+export function palette(element: Element): Palette {
+  const style = getComputedStyle(element);
+  const colour = (name: string): string => style.getPropertyValue(name).trim();
+  return {
+    weft: colour('--weft'),
+    warp: colour('--warp'),
+    surface: colour('--model-surface'),
+    line: colour('--model-line'),
+    mark: colour('--mark'),
+    critical: colour('--critical'),
+  };
+}
