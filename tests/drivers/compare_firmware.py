@@ -95,7 +95,7 @@ class Endpoint:
         for line in SETTINGS + ["$N0=", "$N1=", "$I="]:
             self.ask(line)
         self.send(b"$RST=#\n")
-        self.listen(2.0, until_quiet=True)
+        self.listen(1.0)  # It writes for long before it answers, and is reset then.
         self.ask("$X")
         self.ask("G21G90G94G53G0X0Y0Z0")
         self.ask("G4P0.05", 60.0)
