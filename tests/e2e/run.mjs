@@ -545,6 +545,22 @@ test('a lost stream comes back without a lost event', async (context) => {
   return close();
 });
 
+test('a daemon that dies while a job computes is back with everything it knew', async (context) => {
+  if (target.restart === undefined) return context.skip('only a daemon started here can be killed');
+  const { page, close } = await openPage(browser, target.url);
+  await drop(page, [{ name: 'restart.off', text: torusOff() }]);
+  await page.waitForSelector('.new-job');
+  await page.click('.new-job [type=submit]');
+  await page.waitForSelector('.stage-running, .model canvas', { timeout: kLong });
+  await target.restart();
+  await page.waitForSelector('.connection-live', { timeout: kLong });
+  await page.waitForSelector('.model canvas[data-ready=true]', { timeout: kLong });
+  const { jobs } = await (await fetch(`${target.url}/api/v1/jobs?limit=200`)).json();
+  await page.goto(`${target.url}/#/`);
+  await page.waitForFunction((count) => document.querySelectorAll('.job-row').length === count, jobs.length, { timeout: kLong });
+  return close();
+});
+
 test('dark looks as finished as light', async () => {
   const dark = await openPage(browser, jobAddress, { colorScheme: 'dark' });
   await dark.page.waitForSelector('.model canvas[data-ready=true]', { timeout: kLong });
