@@ -238,7 +238,7 @@ step('the package can be downloaded', async () => {
 async function confirmBed(page) {
   const fire = page.locator('.button.fire');
   assert.equal(await fire.isEnabled(), false, 'the laser must not start before the bed was said to be clear');
-  assert.match(await page.innerText('.clear-bed h3'), /sheet \d+/i);
+  assert.match(await page.innerText('.clear-bed h2'), /sheet \d+/i);
   assert.match(await page.innerText('.clear-bed code'), /^[0-9a-f]{12}$/);
   // By keyboard alone, as with one hand at the machine.
   await page.focus('.tick input');
