@@ -45,20 +45,34 @@ async function startDaemon(binary) {
   const state = mkdtempSync(path.join(tmpdir(), 'leafcutter-e2e-'));
   const port = await freePort();
   const url = `http://127.0.0.1:${port}`;
-  const child = spawn(binary, ['serve', '--state', state, '--listen', `127.0.0.1:${port}`], { stdio: ['ignore', 'pipe', 'pipe'] });
   let said = '';
-  for (const stream of [child.stdout, child.stderr]) stream.on('data', (chunk) => (said += chunk));
-  const ended = new Promise((resolve) => child.on('exit', resolve));
-  const close = async () => {
-    child.kill('SIGTERM');
+  let child;
+  let ended;
+  const start = async () => {
+    child = spawn(binary, ['serve', '--state', state, '--listen', `127.0.0.1:${port}`], { stdio: ['ignore', 'pipe', 'pipe'] });
+    for (const stream of [child.stdout, child.stderr]) stream.on('data', (chunk) => (said += chunk));
+    const mine = child;
+    ended = new Promise((resolve) => mine.on('exit', resolve));
+    await untilHealthy(url, mine, () => said);
+  };
+  const end = async (signal) => {
+    child.kill(signal);
     await ended;
+  };
+  // As a power cut would: without a word.
+  const restart = async () => {
+    await end('SIGKILL');
+    await start();
+  };
+  const close = async () => {
+    await end('SIGTERM');
     rmSync(state, { recursive: true, force: true });
   };
   const device = 'Fast simulated laser';
   try {
-    await untilHealthy(url, child, () => said);
+    await start();
     await addFastMachine(url, device);
-    return { url, made: 'daemon', device, close };
+    return { url, made: 'daemon', device, restart, close };
   } catch (fault) {
     await close();
     throw fault;

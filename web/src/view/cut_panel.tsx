@@ -57,7 +57,7 @@ function ClearBed(props: { readonly cut: Cut; readonly job: Job; readonly action
   return (
     <div class="clear-bed">
       <div class="clear-bed-words">
-        <h3>{t.cut.load(cut.sheet, materialName(material))}</h3>
+        <h2>{t.cut.load(cut.sheet, materialName(material))}</h2>
         <p class="quiet">
           {t.cut.program} <code title={cut.programSha256}>{shortHash(cut.programSha256)}</code>
         </p>

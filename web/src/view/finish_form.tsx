@@ -47,7 +47,7 @@ export function FinishForm(props: { readonly cut: Cut }) {
       }}
     >
       <div class="clear-bed-words">
-        <h3>{words.title}</h3>
+        <h2>{words.title}</h2>
         <p>{beam === null ? words.unknown : howFar(beam)}</p>
         <Tick checked={inPlace} onChange={setInPlace}>
           {words.inPlace}

@@ -19,7 +19,7 @@ export function PartsList(props: {
       <p class="quiet">{t.guide.found(count(found.size), count(all))}</p>
       {content.sheets.map((sheet) => (
         <section key={sheet.id}>
-          <h3>{t.guide.sheet(count(sheet.id), materialName(sheet.material))}</h3>
+          <h2>{t.guide.sheet(count(sheet.id), materialName(sheet.material))}</h2>
           <ul class="parts-list">
             {sheet.pieces.map(({ piece, family }) => (
               <li key={piece}>

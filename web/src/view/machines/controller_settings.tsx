@@ -30,7 +30,6 @@ function SettingRow(props: { readonly device: Device; readonly setting: MachineS
           aria-label={`${setting.key} ${setting.name}`}
           aria-invalid={value === null}
           value={typed}
-          disabled={!device.actions.includes('setting')}
           onInput={(event) => setTyped(event.currentTarget.value)}
         />
       </td>

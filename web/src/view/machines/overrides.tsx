@@ -20,7 +20,7 @@ function next(name: (typeof kNames)[number], now: number, by: 1 | -1): number {
 export function Overrides(props: { readonly device: Device }) {
   const { device } = props;
   const { overridePercent } = device.status;
-  if (!device.actions.includes('override') || overridePercent.length < 3) return null;
+  if (overridePercent.length < 3) return null;
   const change = (name: string, to: number): void =>
     void attempt(() => commandDevice(device.id, 'override', { [name]: to }));
   return (
