@@ -44,7 +44,6 @@ export const guide = {
     ways: { over: 'über', under: 'unter', threaded: 'unter, gefädelt' },
     way: (way: string, ids: string) => `${way} ${ids}`,
     crossings: 'Kreuzungen',
-    crossing: (number: string, way: string, strip: string) => `${number}: ${way} ${strip}`,
     found: (done: string, all: string) => `${done} von ${all} Stücken bereitgelegt`,
     sheet: (sheet: string, material: string) => `Bogen ${sheet}, ${material}`,
     band: (id: string) => `Wie ${id} über und unter den anderen verläuft`,

@@ -44,7 +44,6 @@ export const guide = {
     ways: { over: 'over', under: 'under', threaded: 'under, threaded' },
     way: (way: string, ids: string) => `${way} ${ids}`,
     crossings: 'Crossings',
-    crossing: (number: string, way: string, strip: string) => `${number}: ${way} ${strip}`,
     found: (done: string, all: string) => `${done} of ${all} pieces laid ready`,
     sheet: (sheet: string, material: string) => `Sheet ${sheet}, ${material}`,
     band: (id: string) => `How ${id} passes over and under the others`,

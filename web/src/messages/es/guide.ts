@@ -44,7 +44,6 @@ export const guide = {
     ways: { over: 'sobre', under: 'bajo', threaded: 'bajo, enhebrado' },
     way: (way: string, ids: string) => `${way} ${ids}`,
     crossings: 'Cruces',
-    crossing: (number: string, way: string, strip: string) => `${number}: ${way} ${strip}`,
     found: (done: string, all: string) => `${done} de ${all} piezas preparadas`,
     sheet: (sheet: string, material: string) => `Hoja ${sheet}, ${material}`,
     band: (id: string) => `Cómo pasa ${id} sobre y bajo las demás`,

@@ -44,7 +44,6 @@ export const guide = {
     ways: { over: 'dessus', under: 'dessous', threaded: 'dessous, enfilé' },
     way: (way: string, ids: string) => `${way} ${ids}`,
     crossings: 'Croisements',
-    crossing: (number: string, way: string, strip: string) => `${number} : ${way} ${strip}`,
     found: (done: string, all: string) => `${done} pièces prêtes sur ${all}`,
     sheet: (sheet: string, material: string) => `Feuille ${sheet}, ${material}`,
     band: (id: string) => `Comment ${id} passe dessus et dessous les autres`,

@@ -44,7 +44,6 @@ export const guide = {
     ways: { over: '上', under: '下', threaded: '下（穿入）' },
     way: (way: string, ids: string) => `${way} ${ids}`,
     crossings: '交叉',
-    crossing: (number: string, way: string, strip: string) => `${number}：${way} ${strip}`,
     found: (done: string, all: string) => `已备好 ${done} / ${all} 件`,
     sheet: (sheet: string, material: string) => `板 ${sheet}，${material}`,
     band: (id: string) => `${id} 如何在其他条带上下穿行`,

@@ -45,11 +45,11 @@ export function CrossingBand(props: {
             type="button"
             class={`crossing ${index < at ? 'made' : ''}`}
             aria-current={index === at ? 'step' : undefined}
-            aria-label={t.guide.crossing(count(index + 1), t.guide.ways[crossing.way], crossing.strip)}
             onClick={() => onGo(index === at ? index + 1 : index)}
           >
             <CrossingPicture way={crossing.way} family={family} />
-            <span class="crossing-id">{crossing.strip}</span>
+            <span class="visually-hidden">{count(index + 1)}: </span>
+            <span class="crossing-id">{crossing.strip}</span>{' '}
             <span class="crossing-way">{t.guide.ways[crossing.way]}</span>
           </button>
         </li>
