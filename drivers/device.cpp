@@ -48,6 +48,10 @@ void Device::set_overrides(const std::array<int, 3>& /*percent*/) {
     throw Refused("overrides: this machine has none");
 }
 
+void Device::set_setting(std::string_view /*key*/, double /*value*/) {
+    throw Refused("settings: this machine has none");
+}
+
 namespace {
 
 bool starts_with(std::string_view text, std::string_view start) {

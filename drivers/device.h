@@ -63,6 +63,13 @@ struct Jog {
     double feed_mm_per_min = 1000.0;
 };
 
+// What a controller keeps of itself: "$110" of a Grbl.
+struct MachineSetting {
+    std::string key;
+    double value = 0.0;
+    std::string name;  // "X maximum rate, mm/min"; empty: nobody knows.
+};
+
 // Refused: the machine's state or a preflight check forbids it. The message says what to do.
 class Refused : public std::runtime_error {
 public:
@@ -117,6 +124,15 @@ public:
     // allow; DeviceStatus::override_percent shows how far it has got. Throws Refused where the
     // controller has none.
     virtual void set_overrides(const std::array<int, 3>& percent);
+
+    // As the controller listed them when it was met, or took them since. None of one that lists
+    // none.
+    virtual std::vector<MachineSetting> settings() const { return {}; }
+
+    // Sent at once; settings() shows it once the controller has taken it, status().message why it
+    // hasn't. Throws Refused for a setting that it has not, for a value that would harm, and while
+    // the machine is not idle.
+    virtual void set_setting(std::string_view key, double value);
 
     // Every line received, for a console view. Set before the first run_once(); called by its
     // thread.

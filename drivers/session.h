@@ -53,6 +53,11 @@ public:
         throw Refused("overrides: this machine has none");
     }
 
+    virtual std::vector<MachineSetting> settings() const { return {}; }
+    virtual void set_setting(std::string_view /*key*/, double /*value*/) {
+        throw Refused("settings: this machine has none");
+    }
+
     // The link is gone: a running job ends as LinkLost.
     virtual void lose_link(const std::string& reason) = 0;
 

@@ -135,6 +135,16 @@ void SessionDevice::set_overrides(const std::array<int, 3>& percent) {
     session_->set_overrides(percent);
 }
 
+std::vector<MachineSetting> SessionDevice::settings() const {
+    const std::lock_guard lock(mutex_);
+    return session_->settings();
+}
+
+void SessionDevice::set_setting(std::string_view key, double value) {
+    const std::lock_guard lock(mutex_);
+    session_->set_setting(key, value);
+}
+
 void SessionDevice::write_output() {
     std::string output;
     {

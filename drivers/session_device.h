@@ -48,6 +48,8 @@ public:
     void jog_cancel() override;
     void console(std::string line) override;
     void set_overrides(const std::array<int, 3>& percent) override;
+    std::vector<MachineSetting> settings() const override;
+    void set_setting(std::string_view key, double value) override;
     void run_once(std::chrono::milliseconds slice) override;
 
 private:

@@ -35,7 +35,7 @@ const pagePlugin = {
   },
 };
 
-const options = {
+export const options = {
   absWorkingDir: root,
   entryPoints: ['src/main.tsx', 'src/mesh/worker.ts', 'src/icon.svg'],
   outdir: 'dist/assets',
@@ -56,13 +56,17 @@ const options = {
   plugins: [pagePlugin],
 };
 
-await rm(dist, { recursive: true, force: true });
-if (process.argv.includes('--watch')) {
-  await (await context(options)).watch();
-} else {
-  const { metafile } = await build(options);
-  for (const [file, output] of Object.entries(metafile.outputs)) {
-    const packed = gzipSync(await readFile(path.join(root, file))).length;
-    console.log(`${file}  ${(output.bytes / 1024).toFixed(1)} kB, ${(packed / 1024).toFixed(1)} kB compressed`);
+async function run() {
+  await rm(dist, { recursive: true, force: true });
+  if (process.argv.includes('--watch')) {
+    await (await context(options)).watch();
+  } else {
+    const { metafile } = await build(options);
+    for (const [file, output] of Object.entries(metafile.outputs)) {
+      const packed = gzipSync(await readFile(path.join(root, file))).length;
+      console.log(`${file}  ${(output.bytes / 1024).toFixed(1)} kB, ${(packed / 1024).toFixed(1)} kB compressed`);
+    }
   }
 }
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) await run();

@@ -76,7 +76,12 @@ void FirmwareSigns::take_options(std::string_view line) {
 std::size_t FirmwareSigns::receive_budget() const {
     constexpr std::size_t kSafe = GrblProtocol::kSafeRxBytes;
     // One byte of a ring is never used, and grblHAL states the whole ring.
-    const std::size_t unused = kind_ == GrblFirmware::GrblHal ? 2 : 1;
+    std::size_t unused = kind_ == GrblFirmware::GrblHal ? 2 : 1;
+    // A link that is no UART (a network's, grblHAL's simulator's) stops reading when the buffer is
+    // nearly full: a hold or a '?' would be stuck behind what it doesn't read.
+    constexpr std::size_t kLarge = 512;
+    constexpr std::size_t kKeptFree = 128;
+    unused += stated_rx_ >= kLarge ? kKeptFree : 0;
     constexpr std::size_t kMostBelieved = 65536;
     const bool believed = stated_rx_ > kSafe + unused && stated_rx_ <= kMostBelieved;
     return believed ? stated_rx_ - unused : kSafe;

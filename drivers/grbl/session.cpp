@@ -100,7 +100,7 @@ void GrblSession::start(std::string_view text) {
         throw Refused(fmt::format("start: the machine is busy ({}); it must be idle",
                                   to_string(status_.state)));
     }
-    const Program program = read_program(text, protocol_.longest_line());
+    Program program = read_program(text, protocol_.longest_line());
     preflight(program, facts());
     wanted_overrides_.reset();
     progress_ = {JobOutcome::Running, program.lines.size(), 0, 0, {}};
@@ -109,8 +109,8 @@ void GrblSession::start(std::string_view text) {
     // The modes a program may take for granted, whatever was typed by hand before it.
     job_.push_back({Origin::Frame, "G17G21G40G90G94", 0, false, 0.0});
     job_.push_back({Origin::Frame, "M5S0", 0, false, 0.0});
-    for (const ProgramLine& line : program.lines) {
-        job_.push_back({Origin::Job, line.text, line.number, line.alone, line.dwell_s});
+    for (ProgramLine& line : program.lines) {
+        job_.push_back({Origin::Job, std::move(line.text), line.number, line.alone, line.dwell_s});
     }
     // Its answer comes when the planner is empty (Grbl's own barrier).
     job_.push_back({Origin::Frame, "G4P0.01", 0, false, 0.01});
@@ -206,68 +206,6 @@ void GrblSession::console(std::string_view line) {
         }
         submit(std::string(line));
     }
-}
-
-void GrblSession::set_overrides(const std::array<int, 3>& percent) {
-    if (phase_ != Phase::Ready) {
-        throw Refused("overrides: the machine has not answered yet");
-    }
-    constexpr int kLeast = 10;
-    constexpr int kMost = 200;
-    std::array<int, 3> wanted = percent;
-    wanted[0] = std::clamp(wanted[0], kLeast, kMost);
-    wanted[1] = wanted[1] > 75 ? 100 : (wanted[1] > 37 ? 50 : 25);  // Grbl has these three.
-    wanted[2] = std::clamp(wanted[2], kLeast, kMost);
-    wanted_overrides_ = wanted;
-    step_overrides();
-}
-
-namespace {
-
-constexpr char byte_of(int code) {
-    return static_cast<char>(code);
-}
-
-// The byte that brings a percentage nearer; `first` resets it, then come +10, -10, +1, -1.
-char override_step(int now, int wanted, int first) {
-    const int difference = wanted - now;
-    if (wanted == 100) {
-        return byte_of(first);
-    }
-    if (difference >= 10 || difference <= -10) {
-        return byte_of(difference > 0 ? first + 1 : first + 2);
-    }
-    return byte_of(difference > 0 ? first + 3 : first + 4);
-}
-
-}  // namespace
-
-// One step of each at a time: the firmware drops repeats that come before it has served the first.
-// The next follows when a report shows where it has got.
-void GrblSession::step_overrides() {
-    if (!wanted_overrides_) {
-        return;
-    }
-    const std::array<int, 3>& now = status_.override_percent;
-    const std::array<int, 3> wanted = *wanted_overrides_;
-    if (now == wanted) {
-        wanted_overrides_.reset();
-        return;
-    }
-    constexpr int kFeed = 0x90;
-    constexpr int kRapid = 0x95;
-    constexpr int kPower = 0x99;
-    if (now[0] != wanted[0]) {
-        send_realtime(override_step(now[0], wanted[0], kFeed));
-    }
-    if (now[1] != wanted[1]) {
-        send_realtime(byte_of(kRapid + (wanted[1] == 100 ? 0 : (wanted[1] == 50 ? 1 : 2))));
-    }
-    if (now[2] != wanted[2]) {
-        send_realtime(override_step(now[2], wanted[2], kPower));
-    }
-    overrides_stepped_ = now_;
-    poll_soon();
 }
 
 void GrblSession::lose_link(const std::string& reason) {

@@ -66,8 +66,8 @@ public:
     void console(std::string_view line) override;
     void set_overrides(const std::array<int, 3>& percent) override;
 
-    // $ settings, as the controller listed them or accepted them since.
-    const std::map<int, double>& settings() const { return settings_; }
+    std::vector<MachineSetting> settings() const override;
+    void set_setting(std::string_view key, double value) override;
     void lose_link(const std::string& reason) override;
     std::string_view last_words() const override { return "\x18"; }
 
@@ -169,6 +169,7 @@ private:
     JobProgress progress_;
     GrblOptions options_;
     std::optional<std::array<int, 3>> wanted_overrides_;
+    std::array<int, 3> expected_overrides_{};  // Once the last step is served.
     Time overrides_stepped_;
     std::optional<int> sub_state_;
     std::map<int, double> settings_;

@@ -195,8 +195,9 @@ void GrblSession::handle_status(const StatusReport& report) {
     status_.power_s = report.power_s.value_or(status_.power_s);
     status_.override_percent = report.override_percent.value_or(status_.override_percent);
     take_positions(report);
-    constexpr milliseconds kOverrideWait{700};  // A report of it follows at once, or it was lost.
-    if (report.override_percent || now_ - overrides_stepped_ > kOverrideWait) {
+    constexpr milliseconds kOverrideWait{1500};  // It is reported by then, or it was lost.
+    if (report.override_percent == expected_overrides_ ||
+        now_ - overrides_stepped_ > kOverrideWait) {
         step_overrides();
     }
     if (phase_ == Phase::Greeting) {

@@ -103,7 +103,7 @@ void MarlinSession::start(std::string_view text) {
         throw Refused(fmt::format("start: the machine is busy ({}); it must be idle",
                                   to_string(status_.state)));
     }
-    const Program program = read_program(text);
+    Program program = read_program(text);
     preflight(program, facts());
     progress_ = {JobOutcome::Running, program.lines.size(), 0, 0, {}};
     status_.message.clear();
@@ -112,8 +112,8 @@ void MarlinSession::start(std::string_view text) {
     // The modes a program may take for granted, whatever was typed by hand before it.
     job_.push_back({Origin::Frame, "G21", 0, 0});
     job_.push_back({Origin::Frame, "G90", 0, 0});
-    for (const ProgramLine& line : program.lines) {
-        job_.push_back({Origin::Job, line.text, line.number, 0});
+    for (ProgramLine& line : program.lines) {
+        job_.push_back({Origin::Job, std::move(line.text), line.number, 0});
     }
     // Answered once every move has ended.
     job_.push_back({Origin::Frame, "M400", 0, 0});

@@ -21,4 +21,9 @@ void BeamLog::flush(std::ostream& out) {
     out.flush();
 }
 
+void BeamLog::forget() {
+    pieces_.clear();
+    flushed_ = 0;
+}
+
 }  // namespace leafcutter::drivers

@@ -24,7 +24,7 @@ struct BurntPiece {
 // One line of JSON, without its line end.
 std::string write_json(const BurntPiece& piece);
 
-// Pieces not yet written are kept until flush(); all of them stay readable for the log's life.
+// Pieces not yet written are kept until flush(); all of them stay readable until forget().
 class BeamLog {
 public:
     void add(const BurntPiece& piece) { pieces_.push_back(piece); }
@@ -32,6 +32,9 @@ public:
 
     // Appends the pieces added since the last call as JSON lines.
     void flush(std::ostream& out);
+
+    // Drops all pieces, written or not.
+    void forget();
 
 private:
     std::vector<BurntPiece> pieces_;

@@ -33,6 +33,7 @@ SimHost::SimHost(std::unique_ptr<SimLink> link,
     : link_(std::move(link)),
       address_(link_->address()),
       speed_(options.speed),
+      keep_burnt_(options.keep_burnt),
       burn_file_(open_burn_file(options.burn_path)),
       machine_(std::move(machine)) {
     if (!(speed_ >= 0.0)) {
@@ -83,6 +84,19 @@ milliseconds SimHost::wait_for_bytes() const {
     return machine_->waits_for_questions() ? kQuestionWait : milliseconds(0);
 }
 
+// Written when the machine comes to rest, or when there is much of it.
+void SimHost::keep_log(bool came_to_rest) {
+    constexpr std::size_t kMuch = 10000;
+    BeamLog& log = machine_->beam_log();
+    const bool drop = !keep_burnt_ && log.pieces().size() >= kMuch;
+    if (burn_file_.is_open() && (came_to_rest || drop)) {
+        log.flush(burn_file_);
+    }
+    if (drop) {
+        log.forget();
+    }
+}
+
 // One look at the wire, and the machine moved on by the time that passed.
 void SimHost::turn(double wall_s) {
     const bool resting = machine_->at_rest();
@@ -96,9 +110,7 @@ void SimHost::turn(double wall_s) {
         } else if (!resting || !heard.empty()) {
             said += machine_->hurry();
         }
-        if (burn_file_.is_open() && !resting && machine_->at_rest()) {
-            machine_->beam_log().flush(burn_file_);
-        }
+        keep_log(!resting && machine_->at_rest());
     }
     link_->send(said);
     if (machine_->unplugged() && !unplugged_) {

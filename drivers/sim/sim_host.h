@@ -16,8 +16,9 @@
 namespace leafcutter::drivers {
 
 struct SimHostOptions {
-    double speed = 1.0;     // Simulated seconds per second; 0: as fast as it can be computed.
-    std::string burn_path;  // Beam log as JSON lines; empty: none is written.
+    double speed = 1.0;      // Simulated seconds per second; 0: as fast as it can be computed.
+    std::string burn_path;   // Beam log as JSON lines; empty: none is written.
+    bool keep_burnt = true;  // For burnt(); else a piece is dropped once it is written.
 };
 
 class SimHost {
@@ -41,11 +42,13 @@ public:
 private:
     void run(const std::stop_token& stop);
     void turn(double wall_s);
+    void keep_log(bool came_to_rest);
     std::chrono::milliseconds wait_for_bytes() const;
 
     std::unique_ptr<SimLink> link_;  // Of the thread alone, once that runs.
     std::string address_;
     double speed_;
+    bool keep_burnt_;
     std::ofstream burn_file_;
     mutable std::mutex mutex_;  // Guards *machine_.
     std::unique_ptr<SimMachine> machine_;

@@ -122,7 +122,7 @@ void simulate(const SimulateOptions& options) {
     try {
         const InterruptWatch interrupt;  // Before the machine's thread.
         drivers::SimHost host(open_link(options), make_machine(options),
-                              {options.speed, options.burn_path});
+                              {options.speed, options.burn_path, !options.burn_picture.empty()});
         std::printf("%s:%s\n", options.machine.c_str(), host.address().c_str());
         std::fflush(stdout);
         run_until_interrupted(host, interrupt.token());

@@ -43,6 +43,7 @@ constexpr Route kRoutes[] = {
     {"PUT", "/api/v1/devices/{id}", put_device, Role::Admin},
     {"DELETE", "/api/v1/devices/{id}", delete_device, Role::Admin},
     {"POST", "/api/v1/devices/{id}/commands", command_device, Role::Viewer},
+    {"GET", "/api/v1/devices/{id}/settings", list_settings, Role::Viewer},
     {"GET", "/api/v1/ports", list_ports, Role::Viewer},
     {"GET", "/api/v1/materials", list_materials, Role::Viewer},
     {"GET", "/api/v1/materials/{id}", show_material, Role::Viewer},

@@ -115,6 +115,23 @@ void DeviceRunner::look_for_machine() {
     nudged_.notify_all();
 }
 
+void DeviceRunner::set_overrides(const std::array<std::optional<int>, 3>& percent) {
+    const std::shared_ptr<drivers::Device> machine = connected_device();
+    std::array<int, 3> wanted = machine->status().override_percent;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        wanted.at(i) = percent.at(i).value_or(wanted.at(i));
+    }
+    machine->set_overrides(wanted);
+}
+
+std::vector<drivers::MachineSetting> DeviceRunner::settings() const {
+    return connected_device()->settings();
+}
+
+void DeviceRunner::set_setting(std::string_view key, double value) {
+    device_for_hand_work()->set_setting(key, value);
+}
+
 void DeviceRunner::home() {
     device_for_hand_work()->home();
 }
@@ -152,10 +169,14 @@ std::shared_ptr<drivers::Device> DeviceRunner::device() const {
 }
 
 std::shared_ptr<drivers::Device> DeviceRunner::device_for_hand_work() const {
-    const std::scoped_lock lock(mutex_);
-    if (current_) {
+    if (current_cut()) {
         throw drivers::Refused("a cut is in work on this machine: wait for its end or abort it");
     }
+    return connected_device();
+}
+
+std::shared_ptr<drivers::Device> DeviceRunner::connected_device() const {
+    const std::scoped_lock lock(mutex_);
     if (!device_) {
         throw drivers::Refused("the machine is not connected" +
                                (message_.empty() ? std::string() : ": " + message_));

@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -14,6 +15,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -81,7 +83,15 @@ public:
     // after a cut that ended early.
     void reset();
 
+    // Percent of feed, rapid and power; what isn't given stays. Throws drivers::Refused without a
+    // link, or where the machine has none.
+    void set_overrides(const std::array<std::optional<int>, 3>& percent);
+
+    // What the machine's controller keeps of itself. Throws drivers::Refused without a link.
+    std::vector<drivers::MachineSetting> settings() const;
+
     // Throw drivers::Refused while a cut is in work or without a link.
+    void set_setting(std::string_view key, double value);
     void home();
     void unlock();
     void jog(const drivers::Jog& jog);
@@ -115,6 +125,7 @@ private:
     void wind_down();
 
     std::shared_ptr<drivers::Device> device() const;
+    std::shared_ptr<drivers::Device> connected_device() const;
     std::shared_ptr<drivers::Device> device_for_hand_work() const;
     void keep_line(std::string_view line);
     void say(const std::string& message);

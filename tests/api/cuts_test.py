@@ -393,6 +393,38 @@ class Machines(CutsOf):
         self.ask("POST", path + "/abort")
         self.assertEqual(machine.burnt_in_all_mm(), 0)
 
+    def test_a_cut_goes_faster_and_weaker_while_it_burns(self):
+        machine = Machine(self, "override", 4)
+        path = self.put_cut(machine, sheets=[1])
+        self.burning(machine, path)
+        for wrong, pointer in (({"feed": 9}, "/feed"), ({"feed": 201}, "/feed"), ({"power": 80.5}, "/power"),
+                               ({"power": "80"}, "/power"), ({"rapid": 75}, "/rapid"), ({}, "/feed")):
+            self.assert_problem(machine.command("override", **wrong), 422, "bad-field", pointer)
+        self.assertEqual(machine.command("override", feed=120, power=70)[0], 202)
+        self.wait(machine.path, lambda device: device["status"]["override_percent"] == [120, 100, 70])
+        self.assertEqual(machine.command("override", rapid=50)[0], 202)
+        self.wait(machine.path, lambda device: device["status"]["override_percent"] == [120, 50, 70])
+        self.reaches(path, "done", seconds=60)
+        powers = {json.loads(line)["s"] for line in machine.log.read_text().splitlines()}
+        self.assertGreater(len([s for s in powers if s > 0]), 1)
+
+    def test_settings_are_listed_and_edited_within_what_is_safe(self):
+        machine = Machine(self, "settings", 9)
+        settings = lambda: {s["key"]: s for s in self.get(machine.path + "/settings")["settings"]}
+        self.assertEqual(settings()["$110"], {"key": "$110", "value": 6000, "name": "X maximum rate, mm/min"})
+        self.assertEqual(machine.command("setting", key="$110", value=4500.5)[0], 202)
+        self.wait(machine.path + "/settings", lambda _: settings()["$110"]["value"] == 4500.5)
+        for wrong, pointer in (({"value": 1}, "/key"), ({"key": "$110"}, "/value"), ({"key": "$110", "value": "1"}, "/value")):
+            self.assert_problem(machine.command("setting", **wrong), 422, "bad-field", pointer)
+        for key, value in (("$110", -5), ("$100", 0), ("$999", 1), ("$J", 1), ("$110=1", 2), ("$32", 0.5)):
+            self.assert_problem(machine.command("setting", key=key, value=value), 409, "refused")
+        self.assertEqual(settings()["$110"]["value"], 4500.5)
+        self.assert_problem(self.ask("GET", "/devices/nobody/settings"), 404, "no-such-device")
+        board = Machine(self, "board", 9, kind="marlin")
+        self.assertEqual(self.get(board.path + "/settings"), {"settings": []})
+        self.assert_problem(board.command("setting", key="$110", value=5), 409, "refused")
+        self.assert_problem(board.command("override", feed=120), 409, "refused")
+
     def burn_points(self, program):
         at, burns = {"X": 0.0, "Y": 0.0}, False
         for line in program.splitlines():

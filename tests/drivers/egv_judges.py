@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Has EGV files of ours read by a program that nobody of us wrote, and compares what it would cut with the G-code they
-were made from. Usage: egv_judges.py LEAFCUTTER MEERK40T [PROGRAM.gcode ...]
+were made from. Usage: egv_judges.py LEAFCUTTER MEERK40T [--whisperer WHISPERER] [PROGRAM.gcode ...]
 
 LEAFCUTTER is the binary, MEERK40T a checkout of github.com/meerk40t/meerk40t, whose parser of LHYMICRO-GL is the judge.
-Without programs, some are made up: slopes of every kind, tiny steps, arcs, long jobs, many speeds.
+WHISPERER is one of K40-Whisperer, which has no parser: it encodes the same lines, must come out as near to them, and
+its speed codes are held against ours. Without programs, some are made up: slopes of every kind, tiny steps, arcs, long jobs, many speeds.
 
 Every vertex must be met exactly, at the step that is nearest to it; between two of them every lit step must lie within
 one step of the line; nothing dark may be lit. Exit status 1 if not."""
@@ -11,6 +12,7 @@ import argparse
 import bisect
 import math
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -102,6 +104,59 @@ def judged(egv, checkout):
     return chains
 
 
+HEAD = b"Document type : LHYMICRO-GL file\nFile version: 1.0.01\nCopyright: Unknown\nCreator-Software: K40-Whisperer\n\n%0%0%0%0%\nI"
+
+
+def whispered(chain, checkout):
+    """A lit line from its own beginning, as K40-Whisperer encodes it: a file."""
+    sys.path.insert(0, str(checkout))
+    from egv import egv
+    out = bytearray()
+    encoder = egv(target=out.append)
+    encoder.make_egv_data([[round(x) / 1000, -round(y) / 1000, 0] for (x, y), _ in chain], Feed=20.0, board_name="LASER-M2")
+    return HEAD + bytes(out)
+
+
+def moved_to_origin(chain):
+    x0, y0 = round(chain[0][0][0]), round(chain[0][0][1])
+    return [((x - x0, y - y0), is_end) for (x, y), is_end in chain]
+
+
+def as_whisperer(chains, options):
+    """How near K40-Whisperer comes to the same lines: lit steps, largest deviation, ends missed."""
+    lit, worst, missed = 0, 0.0, 0
+    for chain in map(moved_to_origin, chains):
+        seen = judged(whispered(chain, options.whisperer), options.meerk40t)
+        lit += sum(len(Runs(part)) for part in seen)
+        off, lost = compare(seen[0], chain)
+        worst, missed = max(worst, off), missed + lost
+    return lit, worst, missed
+
+
+def code_numbers(code):
+    """Letters and numbers of a speed code, three digits each."""
+    return re.findall("[A-Z]|[0-9]{3}|[0-9]", code)
+
+
+def speed_codes_differ(options):
+    """By more than the step that K40-Whisperer rounds up now and then."""
+    sys.path.insert(0, str(options.whisperer))
+    from LaserSpeed import LaserSpeed
+    wrong = 0
+    for board in ("M2", "B1", "B2", "A"):
+        for speed in (10, 11, 12.5, 20, 25, 30, 45, 60, 80, 100, 126):
+            theirs = code_numbers(LaserSpeed.get_code_from_speed(speed, 0, board=board))
+            egv = encoded(f"G21\nG90\nM4 S0\nG1 X50 Y30 S500 F{speed * 60}\nM5 S0\n", options, board)
+            ours = [code_numbers(found) for found in re.findall("C?V[0-9]+C?", egv.decode("latin-1").split("%")[-1])]
+            near = [len(code) == len(theirs) and all(a == b or (a.isdigit() and b.isdigit() and abs(int(a) - int(b)) <= 1)
+                                                     for a, b in zip(code, theirs)) for code in ours]
+            if not any(near):
+                wrong += 1
+                print(f"speed {speed} mm/s on {board}: ours {ours}, K40-Whisperer's {theirs}")
+    print(f"speed codes: {wrong} of 44 differ from K40-Whisperer's")
+    return wrong
+
+
 def apart(p, q):
     """In steps of the axis that is farther off: a board has no finer ones."""
     return max(abs(p[0] - q[0]), abs(p[1] - q[1]))
@@ -160,12 +215,17 @@ def nearest(chain, want):
     return worst
 
 
-def judge(name, gcode, options):
+def encoded(gcode, options, board="M2"):
     with tempfile.TemporaryDirectory() as folder:
         program, egv = Path(folder, "program.gcode"), Path(folder, "program.egv")
         program.write_text(gcode)
-        subprocess.run([options.leafcutter, "send", program, "--device", f"lihuiyu:usb?board=M2&width={options.width}&height={options.height}", "--egv", egv], check=True)
-        data = egv.read_bytes()
+        uri = f"lihuiyu:usb?board={board}&width={options.width}&height={options.height}"
+        subprocess.run([options.leafcutter, "send", program, "--device", uri, "--egv", egv], check=True)
+        return egv.read_bytes()
+
+
+def judge(name, gcode, options):
+    data = encoded(gcode, options)
     want, have = wanted(gcode, options.height), judged(data, options.meerk40t)
     arcs = any(not is_end for chain in want for _, is_end in chain)
     results = [(nearest(h, w), 0) if arcs else compare(h, w) for h, w in zip(have, want)]
@@ -174,20 +234,27 @@ def judge(name, gcode, options):
     most = 1.5 if arcs else 1.0  # A chord leaves its arc by half a step more.
     print(f"{name}: {len(data)} bytes, {len(have)} of {len(want)} chains, {lit} lit steps, off by {worst:.3f} steps at most, "
           f"{missed} ends missed", flush=True)
-    return worst <= most and missed == 0
+    good = worst <= most and missed == 0
+    if options.whisperer and not arcs:
+        steps_lit, off, lost = as_whisperer(want, options)
+        print(f"  K40-Whisperer's: {steps_lit} lit steps, off by {off:.3f} steps at most, {lost} ends missed", flush=True)
+        good = good and steps_lit == lit and off <= most and lost == 0
+    return good
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("leafcutter", type=Path)
     parser.add_argument("meerk40t", type=Path)
+    parser.add_argument("--whisperer", type=Path, help="a checkout of K40-Whisperer")
     parser.add_argument("programs", type=Path, nargs="*")
     parser.add_argument("--width", type=float, default=310.0, help="of the bed in mm")
     parser.add_argument("--height", type=float, default=210.0)
     options = parser.parse_args()
     programs = [(p.name, p.read_text()) for p in options.programs] or list(made_up())
     results = [judge(name, gcode, options) for name, gcode in programs]
-    return 0 if all(results) else 1
+    differ = speed_codes_differ(options) if options.whisperer else 0
+    return 0 if all(results) and differ == 0 else 1
 
 
 if __name__ == "__main__":

@@ -31,6 +31,15 @@ double burnt_mm(GrblMachine& machine) {
     return sum;
 }
 
+double setting(const GrblSession& session, int number) {
+    for (const MachineSetting& each : session.settings()) {
+        if (each.key == fmt::format("${}", number)) {
+            return each.value;
+        }
+    }
+    return std::nan("");
+}
+
 double zigzag_mm(int lines) {
     return 90.0 + (lines - 1) * std::hypot(90.0, 1.0);
 }
@@ -209,6 +218,23 @@ TEST(GrblSession, BringsOverridesWhereTheyAreWantedStepByStep) {
     bench.session().set_overrides({151, 100, 80});
     ASSERT_TRUE(bench.finish_job());
     EXPECT_EQ(bench.session().progress().outcome, JobOutcome::Done);
+}
+
+// Reports that were on their way already show the step before.
+TEST(GrblSession, BringsOverridesWhereTheyAreWantedOverASlowLink) {
+    for (const int turns : {10, 50, 100, 160}) {  // Of 5 ms
+        SteppedMachine bench;
+        bench.delay = [turns] { return turns; };
+        ASSERT_TRUE(bench.attach());
+        bench.session().start(zigzag(60));
+        ASSERT_TRUE(bench.run_until([&] { return burnt_mm(bench.machine()) > 100.0; }));
+        const std::array<int, 3> wanted{137, 50, 63};
+        bench.session().set_overrides(wanted);
+        EXPECT_TRUE(bench.run_until(
+            [&] { return bench.session().status().override_percent == wanted; }, 30.0))
+            << turns << ": " << bench.session().status().override_percent[0];
+        bench.session().cancel();
+    }
 }
 
 TEST(GrblSession, StaysHeldUntilResumed) {
@@ -436,12 +462,49 @@ TEST(GrblSession, SendsEepromLinesAlone) {
 TEST(GrblSession, ReadsSettingsAndKeepsUpWithThoseEditedByHand) {
     SteppedMachine bench;
     ASSERT_TRUE(bench.attach());
-    EXPECT_EQ(bench.session().settings().at(30), 1000.0);
+    EXPECT_EQ(setting(bench.session(), 30), 1000.0);
     bench.session().console("$30=500");
     ASSERT_TRUE(bench.run_until([&] { return bench.session().may_close(); }, 3.0));
-    EXPECT_EQ(bench.session().settings().at(30), 500.0);
+    EXPECT_EQ(setting(bench.session(), 30), 500.0);
     EXPECT_EQ(bench.machine().settings().get(30), 500.0);
     EXPECT_THROW(bench.session().start("G21\nM4 S600\nG1 X5 F500\nM5\n"), Refused);
+}
+
+TEST(GrblSession, EditsSettingsThatTheControllerHasWithinWhatIsSafe) {
+    SteppedMachine bench;
+    ASSERT_TRUE(bench.attach());
+    const auto names = bench.session().settings();
+    EXPECT_TRUE(std::any_of(names.begin(), names.end(), [](const MachineSetting& each) {
+        return each.key == "$110" && each.name == "X maximum rate, mm/min" && each.value == 6000.0;
+    }));
+    bench.session().set_setting("$110", 4321.25);
+    bench.session().set_setting("11", 0.02);
+    ASSERT_TRUE(bench.run_until([&] { return setting(bench.session(), 11) == 0.02; }, 3.0));
+    EXPECT_EQ(bench.machine().settings().get(110), 4321.25);
+    EXPECT_EQ(setting(bench.session(), 110), 4321.25);
+    using Edit = std::pair<const char*, double>;
+    for (const auto& [key, value] :
+         {Edit{"$0", 2}, Edit{"$32", 0.5}, Edit{"$100", 0}, Edit{"$110", -1}, Edit{"$999", 1},
+          Edit{"$", 1}, Edit{"$1=", 1}, Edit{"$J", 1}, Edit{"$130", 1e9},
+          Edit{"$12", std::nan("")}}) {
+        EXPECT_THROW(bench.session().set_setting(key, value), Refused) << key;
+    }
+    // Only the controller knows that; it is said, and nothing is believed that it has refused.
+    bench.session().set_setting("$20", 1);
+    ASSERT_TRUE(bench.run_until([&] { return bench.session().may_close(); }, 3.0));
+    EXPECT_EQ(setting(bench.session(), 20), 0.0);
+    EXPECT_THAT(bench.session().status().message, HasSubstr("$20=1: error:10"));
+    bench.session().start(zigzag(4));
+    EXPECT_THROW(bench.session().set_setting("$110", 5000), Refused);
+}
+
+TEST(GrblSession, RaisesNoPowerAboveACap) {
+    GrblOptions options;
+    options.power_cap_percent = 60.0;
+    SteppedMachine bench({}, {}, options);
+    ASSERT_TRUE(bench.attach());
+    EXPECT_THROW(bench.session().set_overrides({100, 100, 110}), Refused);
+    EXPECT_NO_THROW(bench.session().set_overrides({110, 100, 90}));
 }
 
 // A key held down: a jog every 40 ms, and the head stands soon after it is let go.

@@ -1,6 +1,8 @@
 // How well the driver uses a serial line of 115,200 baud, in simulated time.
 
+#include <array>
 #include <deque>
+#include <malloc.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -116,6 +118,53 @@ TEST(GrblThroughput, NeverStarvesThePlannerWhereTheLinkIsFastEnough) {
         }
     }
     EXPECT_NEAR(slowest, 3000.0, 1.0);
+}
+
+// Bytes in use by everything in this process; 0 where a sanitizer keeps them.
+std::size_t bytes_in_use() {
+    return mallinfo2().uordblks;
+}
+
+// What a job keeps it has at its beginning: nothing grows with the lines that were sent, neither in
+// the session nor in a simulated machine whose log is taken away.
+TEST(GrblSession, NeedsNoMoreMemoryTheLongerAJobLasts) {
+    constexpr int kLines = 200000;
+    std::string program = "G21\nG90\nM4 S0\nG0 X10 Y10\n";
+    for (int i = 0; i < kLines; ++i) {
+        program += fmt::format("G1 X{:.2f} Y{:.2f} F6000 S500\n", 10.0 + 0.5 * (i % 150),
+                               10.0 + 0.5 * ((i / 150) % 600));
+    }
+    program += "M5 S0\n";
+    Session::Time now{std::chrono::hours(1)};
+    GrblMachine machine;
+    GrblSession session(now);
+    const auto step = [&] {
+        constexpr double kTurn = 0.02;
+        now += std::chrono::milliseconds(20);
+        std::string said = machine.feed(session.take_output());
+        said += machine.advance(kTurn);
+        session.receive(said, now);
+        session.tick(now);
+        session.take_lines();
+        machine.beam_log().forget();
+    };
+    for (int i = 0; i < 1000 && !session.attached(); ++i) {
+        step();
+    }
+    session.start(program);
+    std::array<std::size_t, 11> used{};  // When so many tenths are done.
+    while (session.progress().outcome == JobOutcome::Running) {
+        step();
+        const JobProgress& progress = session.progress();
+        std::size_t& tenth = used.at(10 * progress.lines_acknowledged / progress.lines_total);
+        tenth = std::max(tenth, bytes_in_use());
+    }
+    EXPECT_EQ(session.progress().outcome, JobOutcome::Done) << session.progress().reason;
+    EXPECT_EQ(session.progress().lines_acknowledged, session.progress().lines_total);
+    for (std::size_t tenth = 2; tenth < used.size(); ++tenth) {
+        EXPECT_LE(used.at(tenth), used.at(1)) << tenth;
+    }
+    fmt::print("in use: {} kB after a tenth, {} kB at the end\n", used[1] / 1024, used[10] / 1024);
 }
 
 }  // namespace

@@ -62,14 +62,12 @@ export async function drop(page, files) {
   for (const type of ['dragenter', 'dragover', 'drop']) await page.dispatchEvent('main', type, { dataTransfer: transfer });
 }
 
-// Serious and critical faults that axe finds, as short lines. The script is run in the page by the
+// All faults that axe finds, as short lines. The script is run in the page by the
 // debugger, so it needs no hole in the page's content policy.
 export async function axeFaults(page) {
   await page.evaluate(axeSource);
   const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
-  return violations
-    .filter(({ impact }) => impact === 'serious' || impact === 'critical')
-    .map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
+  return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
 }
 
 // How many different colours the canvas shows: 1 when nothing was drawn.

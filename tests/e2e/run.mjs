@@ -37,6 +37,10 @@ async function assertAccessible(page, where) {
   }
 }
 
+// In the page: length of everything drawn as burnt, in mm.
+const burntLength = () =>
+  [...document.querySelectorAll('.burn path')].reduce((sum, path) => sum + path.getTotalLength(), 0);
+
 // The steps of one story: where one fails, those after it would only wait in vain.
 let broken = '';
 function step(name, act) {
@@ -62,13 +66,42 @@ step('a mesh dropped on the page opens the form with good defaults', async () =>
   await assertAccessible(desk.page, 'form');
 });
 
+step('the mesh is seen before anything is sent', async () => {
+  await desk.page.waitForSelector('.mesh-good', { timeout: kLong });
+  const said = await desk.page.innerText('.mesh-facts');
+  assert.match(said, /960 vertices, 1,?920 faces · one piece · genus 1 · closed/);
+  assert.match(said, /300 × 300 × 85/);
+  await desk.page.waitForSelector('.mesh-view canvas[data-ready=true]');
+  const strips = async () => Number((await desk.page.innerText('.estimate strong >> nth=0')).replace(',', ''));
+  const wide = await strips();
+  await desk.page.getByLabel('Strip width').fill('5');
+  assert.ok((await strips()) > 1.5 * wide, 'narrower strips are more');
+  await desk.page.getByLabel('Strip width').fill('10');
+});
+
+step('a place is picked on the model', async () => {
+  const { page } = desk;
+  const field = page.getByLabel('Singular points near', { exact: true });
+  await page.locator('.pick-tool', { has: field }).getByRole('button').click();
+  const canvas = page.locator('.mesh-view canvas');
+  await canvas.scrollIntoViewIfNeeded();
+  const box = await canvas.boundingBox();
+  for (const [fx, fy] of [[0.5, 0.75], [0.3, 0.55], [0.7, 0.55], [0.5, 0.3]]) {
+    await page.mouse.click(box.x + fx * box.width, box.y + fy * box.height);
+    if ((await field.inputValue()) !== '') break;
+  }
+  assert.match(await field.inputValue(), /^\d+$/);
+  await picture(page, 'pick-light');
+  await field.fill('');
+});
+
 step('a wrong measure is said at once and cannot be sent', async () => {
   const width = desk.page.getByLabel('Strip width');
   await width.fill('-3');
   assert.match(await desk.page.innerText('.new-job [role=alert]'), /strip width/i);
   assert.equal(await desk.page.isEnabled('.new-job [type=submit]'), false);
   await width.fill('16');
-  await desk.page.getByLabel('Longest side').fill('200');
+  await desk.page.getByRole('textbox', { name: 'Longest side' }).fill('200');
 });
 
 step('the layout is chosen among those that fit together', async () => {
@@ -97,17 +130,24 @@ step('the job computes while its stages are watched', async () => {
 step('the weave is drawn in 3D, in every mode, and turns by keyboard', async () => {
   const canvas = desk.page.locator('.model canvas');
   const seen = new Set();
-  for (const mode of ['Weft', 'Warp', 'Surface', 'Woven']) {
+  // Drawing in software on a busy machine takes its time.
+  const isNew = async (what) => {
+    for (const end = Date.now() + kLong; Date.now() < end; await desk.page.waitForTimeout(200)) {
+      const drawn = await canvas.evaluate((element) => element.toDataURL());
+      if (!seen.has(drawn)) return seen.add(drawn);
+    }
+    return assert.fail(`${what} looks like something before it`);
+  };
+  for (const mode of ['Weft', 'Warp', 'Quads', 'Cylinders', 'Surface', 'Leaves', 'Quality', 'Woven']) {
     await desk.page.getByRole('button', { name: mode, exact: true }).click();
-    await desk.page.waitForTimeout(250);
-    assert.ok((await canvasColours(desk.page)) > 20, mode);
-    seen.add(await canvas.evaluate((element) => element.toDataURL()));
+    await desk.page.waitForFunction(() => document.querySelector('.model .view-note') === null, null, { timeout: kLong });
+    await isNew(mode);
+    assert.ok((await canvasColours(desk.page)) > 10, mode);
   }
   await canvas.focus();
   await desk.page.keyboard.press('ArrowLeft');
-  await desk.page.waitForTimeout(250);
-  seen.add(await canvas.evaluate((element) => element.toDataURL()));
-  assert.equal(seen.size, 5);
+  await isNew('a turned model');
+  assert.equal(seen.size, 9);
   await desk.page.keyboard.press('Home');
 });
 
@@ -153,6 +193,31 @@ step('a strip chosen in 3D lights up on its sheet, and back', async () => {
   assert.equal(await desk.page.inputValue('.strip-picker select'), id);
 });
 
+step('a figure of the report shows where it comes from', async () => {
+  await desk.page.getByRole('button', { name: 'Distance to surface' }).click();
+  await desk.page.waitForSelector('.heat-bar');
+  assert.equal(await desk.page.locator('.heat-legend select').inputValue(), 'distance');
+  await picture(desk.page, 'heat-light', { fullPage: false });
+  await assertAccessible(desk.page, 'heat map');
+  await desk.page.getByRole('button', { name: 'Woven', exact: true }).click();
+});
+
+step('the cut is played from the exact program', async () => {
+  const { page } = desk;
+  await page.getByRole('button', { name: 'Play the cut' }).click();
+  const slider = page.getByRole('slider');
+  await slider.waitFor();
+  await page.waitForFunction(() => document.querySelectorAll('.burn path').length > 0);
+  const end = Math.floor(Number(await slider.getAttribute('max')));
+  await slider.fill(String(Math.round(end / 2)));
+  const half = await page.evaluate(`(${burntLength})()`);
+  await slider.fill(String(end));
+  const whole = await page.evaluate(`(${burntLength})()`);
+  assert.ok(half > 0.2 * whole && half < 0.8 * whole, `${half} of ${whole}`);
+  await assertAccessible(page, 'playing');
+  await page.locator('.playback').getByRole('button', { name: 'Close' }).click();
+});
+
 step('the sheet zooms and comes back', async () => {
   const view = () => desk.page.getAttribute('.sheet', 'viewBox');
   const whole = await view();
@@ -191,10 +256,6 @@ step('nothing burns before the operator says that the bed is clear', async () =>
   await confirmBed(desk.page);
   await desk.page.waitForSelector('.cut.state-cutting');
 });
-
-// Length of everything drawn as burnt, in mm.
-const burntLength = () =>
-  [...document.querySelectorAll('.burn path')].reduce((sum, path) => sum + path.getTotalLength(), 0);
 
 step('the burnt part grows while the machine cuts; pausing holds it', async () => {
   const { page } = desk;
@@ -262,6 +323,166 @@ step('every sheet is confirmed and cut until the job is done', async () => {
   await assertAccessible(page, 'done');
 });
 
+step('the assembly is walked through on a phone, and the place is kept', async () => {
+  const phone = await openPage(browser, `${jobAddress}/guide`, { viewport: kPhone, hasTouch: true, isMobile: true });
+  const { page } = phone;
+  await page.waitForSelector('.guide-picture canvas[data-ready=true]', { timeout: kLong });
+  assert.match(await page.innerText('.guide-at'), /Step 1 of \d+/);
+  await page.getByRole('button', { name: 'Done, next' }).tap();
+  await page.waitForSelector('.crossing');
+  assert.match(await page.innerText('.guide-words h2'), /Weave in W\d+/);
+  await page.locator('.crossing').first().tap();
+  assert.equal(await page.locator('.crossing.made').count(), 1);
+  await page.waitForTimeout(300);
+  await picture(page, 'guide-phone', { fullPage: false });
+  await assertAccessible(page, 'guide on a phone');
+  assert.deepEqual(await page.evaluate(tooWide, kPhone.width), []);
+  await page.reload();
+  await page.waitForSelector('.crossing');
+  assert.match(await page.innerText('.guide-at'), /Step 2 of \d+/);
+  assert.equal(await page.locator('.crossing.made').count(), 1);
+  for (const tab of ['Parts', 'All steps']) {
+    await page.getByRole('button', { name: tab, exact: true }).tap();
+    await assertAccessible(page, `guide, ${tab}`);
+  }
+  assert.deepEqual(phone.faults, []);
+  await phone.close();
+});
+
+step('the guide prints every step with a picture', async () => {
+  const { page, close } = await openPage(browser, `${jobAddress}/guide`);
+  await page.waitForSelector('.guide-picture canvas[data-ready=true]', { timeout: kLong });
+  await page.evaluate(() => {
+    globalThis.print = () => {
+      const drawn = [...document.querySelectorAll('.printed-step canvas')].filter((canvas) => {
+        const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer);
+        return new Set(pixels).size > 20;
+      });
+      globalThis.printed = { steps: document.querySelectorAll('.printed-step').length, drawn: drawn.length };
+    };
+  });
+  await page.getByRole('button', { name: 'Print', exact: true }).click();
+  await page.waitForFunction(() => globalThis.printed !== undefined, null, { timeout: kLong });
+  const { steps, drawn } = await page.evaluate(() => globalThis.printed);
+  assert.ok(steps > 5);
+  assert.equal(drawn, steps);
+  await close();
+});
+
+step('a job is woven again with other settings and laid beside the first', async () => {
+  const { page } = desk;
+  await page.getByRole('button', { name: 'Change and weave again' }).click();
+  await page.waitForSelector('.new-job');
+  assert.equal(await page.getByLabel('Strip width').inputValue(), '16');
+  await page.getByLabel('Strip width').fill('20');
+  await page.click('.new-job [type=submit]');
+  await page.waitForSelector('.model canvas[data-ready=true]', { timeout: kLong });
+  await page.locator('.compare-with').selectOption({ index: 1 });
+  await page.waitForSelector('.compare-figures td', { timeout: kLong });
+  await page.waitForFunction(() => document.querySelectorAll('.model canvas[data-ready=true]').length === 2, null, { timeout: kLong });
+  assert.match(await page.innerText('.compare-page'), /grid\.strip_width_mm\s+20\s+16/);
+  await picture(page, 'compare-light');
+  await assertAccessible(page, 'compare');
+});
+
+const kPages = ['', '#/queue', '#/machines', '#/materials', '#/stock', '#/settings', '#/people', '#/audit'];
+
+test('every page is accessible in both schemes, and fits a phone', async () => {
+  const wide = await openPage(browser, target.url);
+  const small = await openPage(browser, target.url, { viewport: kPhone, hasTouch: true, isMobile: true });
+  for (const address of kPages) {
+    const name = address.slice(2) || 'jobs';
+    for (const [size, { page }] of [['desk', wide], ['phone', small]]) {
+      await page.goto(`${target.url}/${address}`);
+      await page.waitForSelector('main h1');
+      await page.waitForTimeout(400);
+      for (const colorScheme of ['dark', 'light']) {
+        await page.emulateMedia({ colorScheme });
+        await picture(page, `${name}-${size}-${colorScheme}`);
+      }
+      await assertAccessible(page, `${name}, ${size}`);
+    }
+    assert.deepEqual(await small.page.evaluate(tooWide, kPhone.width), [], name);
+  }
+  if (target.made === 'fake') assert.deepEqual([...wide.faults, ...small.faults], []);
+  await wide.close();
+  await small.close();
+});
+
+test('windows over the page are accessible and close with Escape', async () => {
+  const { page, close } = await openPage(browser, `${target.url}/#/machines`);
+  for (const [address, button] of [['#/machines', 'Add a machine'], ['#/materials', 'Add a material']]) {
+    await page.goto(`${target.url}/${address}`);
+    await page.getByRole('button', { name: button }).click();
+    await page.waitForSelector('dialog[open]');
+    await assertAccessible(page, button);
+    await page.keyboard.press('Escape');
+    await page.waitForSelector('dialog', { state: 'detached' });
+  }
+  await close();
+});
+
+test('every language is spoken, and the choice is kept', async () => {
+  const { page, faults, close } = await openPage(browser, `${target.url}/#/settings`, { locale: 'fr-FR' });
+  await page.waitForFunction(() => document.documentElement.lang === 'fr');
+  const heads = new Set();
+  for (const language of ['en', 'de', 'es', 'fr', 'zh']) {
+    await page.locator('.settings-form select').selectOption(language);
+    await page.waitForFunction((tag) => document.documentElement.lang.startsWith(tag), language);
+    heads.add(await page.innerText('.main-nav'));
+    assert.deepEqual(await axeFaults(page), [], language);
+  }
+  assert.equal(heads.size, 5);
+  await page.reload();
+  await page.waitForFunction(() => document.documentElement.lang === 'zh-Hans');
+  if (target.made === 'fake') assert.deepEqual(faults, []);
+  await close();
+});
+
+test('dark can be chosen against the system', async () => {
+  const { page, close } = await openPage(browser, `${target.url}/#/settings`);
+  const ground = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
+  const light = await ground();
+  await page.getByRole('button', { name: 'Dark' }).click();
+  assert.notEqual(await ground(), light);
+  await page.reload();
+  await page.waitForSelector('.settings-form');
+  assert.notEqual(await ground(), light);
+  await close();
+});
+
+test('two browsers see the same at the same time', async () => {
+  const [one, other] = [await openPage(browser, target.url), await openPage(browser, target.url)];
+  await other.page.waitForSelector('.job-row');
+  const rows = await other.page.locator('.job-row').count();
+  await drop(one.page, [{ name: 'shared.off', text: torusOff() }]);
+  await one.page.waitForSelector('.new-job');
+  await one.page.click('.new-job [type=submit]');
+  await other.page.waitForFunction((count) => document.querySelectorAll('.job-row').length === count, rows + 1);
+  const row = other.page.locator('.job-row', { hasText: 'shared' });
+  await row.waitFor();
+  await one.page.getByRole('button', { name: 'Cancel', exact: true }).click();
+  await row.getByText('Cancelled').waitFor({ timeout: kLong });
+  await one.close();
+  await other.close();
+});
+
+test('a job is made with the keyboard alone', async () => {
+  const { page, close } = await openPage(browser, target.url);
+  await drop(page, [{ name: 'keys.off', text: torusOff() }]);
+  await page.waitForSelector('.new-job [type=submit]');
+  const submit = page.locator('.new-job [type=submit]');
+  for (let press = 0; press < 80; press += 1) {
+    await page.keyboard.press('Tab');
+    if (await submit.evaluate((button) => button === document.activeElement)) break;
+  }
+  await page.keyboard.press('Enter');
+  await page.waitForSelector('.job-page h1');
+  await page.keyboard.press('Tab');
+  assert.equal(await page.evaluate(() => document.activeElement !== document.body), true);
+  await close();
+});
+
 test('a mesh that cannot be woven says why', async () => {
   await desk.page.goto(`${target.url}/#/`);
   await drop(desk.page, [{ name: 'broken.off', text: 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n' }]);
@@ -274,6 +495,7 @@ test('a mesh that cannot be woven says why', async () => {
 });
 
 test('the machine card shows the head and moves it', async () => {
+  desk.page.setDefaultTimeout(20_000);
   await desk.page.goto(`${target.url}/#/machines`);
   const card = desk.page.locator('.machine', { has: desk.page.locator('.jog-pad') }).first();
   await card.waitFor();

@@ -48,12 +48,18 @@ export class FakeDaemon {
       state, machine_position_mm: [0, 0, 0], work_position_mm: [0, 0, 0], feed_mm_per_min: 0, power_s: 0,
       override_percent: [100, 100, 100], alarm_code: null, message: '', firmware: state === 'disconnected' ? '' : 'Grbl 1.1h',
     };
-    this.devices.set(id, { id, name, uri, auto_start: false, bed_mm: [600, 400], status, cut: null, actions: [] });
+    this.devices.set(id, { id, name, uri, auto_start: false, bed_mm: [600, 400], status, cut: null, console: [], actions: [] });
   }
 
   snapshot() {
     const all = (map) => [...map.values()].map((item) => this.view(item));
     return { seq: this.log.length, jobs: all(this.jobs), cuts: all(this.cuts), devices: all(this.devices) };
+  }
+
+  queue() {
+    const waiting = [...this.jobs.values()].filter((job) => job.state === 'queued');
+    const next = waiting.map(({ id, name }) => ({ id, name, priority: 0 }));
+    return { paused: this.paused === true, reason: '', queued: next.length, computing: 0, dead_letters: 0, next };
   }
 
   // An item as the interface shows it.

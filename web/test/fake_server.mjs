@@ -15,7 +15,35 @@ const kMaterials = [
   { id: 'paper-160-yellow', name: 'Paper 160 g/m², yellow', colour: '#e8c547', thickness_mm: 0.2 },
   { id: 'paper-160-blue', name: 'Paper 160 g/m², blue', colour: '#3f6fb5', thickness_mm: 0.2 },
   { id: 'veneer-oak', name: 'Oak veneer', colour: '#b98a56', thickness_mm: 0.6 },
+].map((material) => ({
+  ...material, weight_g_per_m2: 160, kerf_mm: 0.15, origin: 'built-in', sheets: [{ width_mm: 600, height_mm: 400 }],
+  cut: { power_percent: 60, feed_mm_per_min: 1200, passes: 1 }, score: { power_percent: 20, feed_mm_per_min: 2400, passes: 1 }, engrave: { power_percent: 15, feed_mm_per_min: 3000, passes: 1 },
+}));
+
+const kUser = { name: 'ada', role: 'admin', created_at: '2026-01-05T08:00:00Z' };
+const kKey = {
+  id: 'k1', user: 'ada', label: 'CI', role: 'submitter', may_fire: false, created_at: '2026-01-06T08:00:00Z', expires_at: null, used_at: null,
+};
+const kOutline = [[0, 0], [420, 0], [420, 180], [300, 180], [300, 260], [0, 260]];
+const kStock = [
+  { id: 'yellow', kind: 'sheet', material: 'paper-160-yellow', width_mm: 600, height_mm: 400, quantity: 12, planned: 2, from_job: null },
+  { id: 'offcut-1', kind: 'remnant', material: 'paper-160-blue', outline: kOutline, holes: [[[40, 40], [120, 40], [120, 90], [40, 90]]], quantity: 1, from_job: null },
 ];
+const kEntries = Array.from({ length: 8 }, (_, k) => ({
+  seq: 8 - k, at: `2026-01-07T10:0${8 - k}:00Z`, user: k % 3 === 0 ? null : 'ada', remote: '192.0.2.7', action: `POST /api/v1/cuts/c_${k}/start`, note: '', status: k % 4 === 0 ? 409 : 202,
+}));
+const kSession = { accounts: false, authenticated: true, user: null, role: null, may_fire: true, csrf_token: null };
+// Pages that only show what is there; a whole daemon keeps it.
+const kShown = {
+  '/session': kSession,
+  '/version': { name: 'leafcutter', version: '0.1.0', api: 'v1' },
+  '/ports': { ports: [{ uri: 'grbl:/dev/ttyUSB0?baud=115200', description: 'USB serial', trouble: '' }] },
+  '/stock': { stock: kStock },
+  '/presets': { presets: [{ id: 'fine', name: 'Fine', params: { grid: { strip_width_mm: 6 }, weave: { pattern: 'twill-2x2' } } }] },
+  '/users': { users: [kUser, { ...kUser, name: 'eve', role: 'operator' }], next_cursor: null },
+  '/keys': { keys: [kKey], next_cursor: null },
+  '/audit': { entries: kEntries, next_cursor: null },
+};
 
 function sendJson(response, status, value) {
   response.writeHead(status, { 'Content-Type': 'application/json' });
@@ -113,6 +141,10 @@ const kRoutes = [
   ['GET', /^\/devices$/, (d, _, q, r) => sendJson(r, 200, { devices: d.snapshot().devices })],
   ['POST', /^\/devices\/([^/]+)\/commands$/, async (d, [id], q, r) => { d.commandDevice(id, await jsonOf(q)); sendJson(r, 202, {}); }],
   ['GET', /^\/materials$/, (d, _, q, r) => sendJson(r, 200, { materials: kMaterials })],
+  ['GET', /^\/queue$/, (d, _, q, r) => sendJson(r, 200, d.queue())],
+  ['POST', /^\/queue\/(pause|resume)$/, (d, [word], q, r) => { d.paused = word === 'pause'; sendJson(r, 200, d.queue()); }],
+  ['GET', /^\/devices\/[^/]+\/settings$/, (d, _, q, r) => sendJson(r, 200, { settings: [{ key: '$110', value: 8000, name: 'X maximum rate' }] })],
+  ['GET', /^\/(session|version|ports|stock|presets|users|keys|audit)$/, (d, [name], q, r) => sendJson(r, 200, kShown[`/${name}`])],
   ['GET', /^\/events$/, (d, _, q, r) => serveEvents(d, q, r)],
 ];
 

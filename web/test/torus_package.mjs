@@ -233,6 +233,45 @@ function report(mesh, layout, counts) {
   };
 }
 
+// Rings of warp laid side by side, every weft ring woven in and closed, then the warp rings closed.
+function assemblyMoves(strips, warpOnTop) {
+  const [warp, weft] = ['warp', 'weft'].map((family) => strips.filter((strip) => strip.family === family));
+  const over = (quad) => (warpOnTop[quad] === 0 ? 'over' : 'under');
+  const lay = (strip, crossings) => ({ kind: 'lay', region: 0, strip: strip.id, pieces: strip.pieces, crossings });
+  const close = (strip) => ({
+    kind: 'close', region: 0, strip: strip.id, piece: strip.pieces.at(-1), onto: strip.pieces[0], end: 'end', where: 'in-place', crossing: strip.quads.at(-1), tucked: 0,
+  });
+  return [
+    ...warp.map((strip) => lay(strip, [])),
+    ...weft.flatMap((strip) => [lay(strip, strip.quads.map((quad, k) => [quad, warp[k].id, over(quad)])), close(strip)]),
+    ...warp.map(close),
+  ];
+}
+
+// Made-up figures of every quad, of the sort that quality.json has.
+function qualityFile({ vertices, quads }) {
+  const wave = (count, top) => Array.from({ length: count }, (_, k) => round(top * (1 + Math.sin(k / 7)), 4));
+  return {
+    format: 'leafcutter-quality/1', quads: quads.length, vertices: vertices.length,
+    per_quad: { distance_percent: wave(quads.length, 0.2), area_percent: wave(quads.length, 0.3), planarity_percent: wave(quads.length, 1.1) },
+    per_vertex: { angle_deviation_deg: wave(vertices.length, 1.9) },
+  };
+}
+
+function leavesFile({ vertices }, { columns, rows }) {
+  const at = (i, j) => vertices[(i % columns) * rows + (j % rows)].map((x) => round(x));
+  const ring = (count, point) => Array.from({ length: count }, (_, k) => point(k));
+  const weft = ring(rows, (j) => ({ family: 'weft', cylinder: 0, closed: true, points: ring(columns, (i) => at(i, j)) }));
+  const warp = ring(columns, (i) => ({ family: 'warp', cylinder: 0, closed: true, points: ring(rows, (j) => at(i, j)) }));
+  return { format: 'leafcutter-leaves/1', critical_graph: [], singularities: [], leaves: [...weft, ...warp] };
+}
+
+function surfacePly({ vertices, quads }) {
+  const faces = quads.flatMap(([a, b, c, d]) => [`3 ${a} ${b} ${c}`, `3 ${a} ${c} ${d}`]);
+  const head = ['ply', 'format ascii 1.0', `element vertex ${vertices.length}`, ...['x', 'y', 'z'].map((axis) => `property float64 ${axis}`)];
+  return [...head, `element face ${faces.length}`, 'property list uint8 int32 vertex_indices', 'end_header', ...vertices.map((p) => p.join(' ')), ...faces, ''].join('\n');
+}
+
 // → { files: Map path → text, sheets: [{id, material, programSha256}], counts }
 export function torusPackage({ name = 'torus', major = 95, minor = 38, columns = 48, rows = 20 } = {}) {
   const counts = { columns, rows };
@@ -250,7 +289,13 @@ export function torusPackage({ name = 'torus', major = 95, minor = 38, columns =
     ['report.json', json(report(mesh, layout, counts))],
     ['quads.obj', [...mesh.vertices.map((p) => `v ${p.map((x) => round(x, 6)).join(' ')}`), 'g cylinder_0', ...mesh.quads.map((q) => `f ${q.map((v) => v + 1).join(' ')}`), ''].join('\n')],
     ['strips.json', json({ format: 'leafcutter-strips/1', strips, pieces })],
-    ['weave.json', json({ format: 'leafcutter-weave/1', warp_on_top: warpOnTop, seams: [] })],
+    ['weave.json', json({
+      format: 'leafcutter-weave/1', warp_on_top: warpOnTop, seams: [],
+      regions: [{ cylinders: [0], part: 0, base: 'warp' }], moves: assemblyMoves(strips, warpOnTop),
+    })],
+    ['quality.json', json(qualityFile(mesh))],
+    ['leaves.json', json(leavesFile(mesh, counts))],
+    ['surface.ply', surfacePly(mesh)],
     ['layout.json', json(layout)],
     ['guide.html', '<!doctype html><title>Guide</title><p>Assembly guide.</p>'],
   ]);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -105,6 +106,43 @@ std::string console_line_in(const json& body) {
     return line;
 }
 
+// In percent; Grbl has these steps of rapids.
+std::array<std::optional<int>, 3> overrides_in(const json& body) {
+    constexpr std::array<const char*, 3> kNames{"feed", "rapid", "power"};
+    std::array<std::optional<int>, 3> percent;
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+        const auto found = body.find(kNames.at(i));
+        if (found == body.end()) {
+            continue;
+        }
+        const bool rapid = i == 1;
+        const int value = found->is_number_integer() ? found->get<int>() : 0;
+        if (rapid && value != 25 && value != 50 && value != 100) {
+            throw bad_field(kNames.at(i), "must be 25, 50 or 100 percent");
+        }
+        if (value < 10 || value > 200) {
+            throw bad_field(kNames.at(i), "must be a whole percentage from 10 to 200");
+        }
+        percent.at(i) = value;
+    }
+    if (percent == std::array<std::optional<int>, 3>{}) {
+        throw bad_field("feed", "one of feed, rapid and power must be given");
+    }
+    return percent;
+}
+
+void set_setting(DeviceRunner& runner, const json& body) {
+    const auto key = body.find("key");
+    if (key == body.end() || !key->is_string()) {
+        throw bad_field("key", "must name a setting, like $110");
+    }
+    const auto value = body.find("value");
+    if (value == body.end() || !value->is_number()) {
+        throw bad_field("value", "must be a number");
+    }
+    runner.set_setting(key->get<std::string>(), value->get<double>());
+}
+
 using Command = void (*)(DeviceRunner& runner, const json& body);
 
 struct NamedCommand {
@@ -124,6 +162,9 @@ constexpr NamedCommand kCommands[] = {
      Beam::MayFire},
     {"stop", [](DeviceRunner& runner, const json&) { runner.stop(); }, Role::Viewer},
     {"reset", [](DeviceRunner& runner, const json&) { runner.reset(); }},
+    {"override",
+     [](DeviceRunner& runner, const json& body) { runner.set_overrides(overrides_in(body)); }},
+    {"setting", set_setting},
     {"console",
      [](DeviceRunner& runner, const json& body) { runner.console(console_line_in(body)); },
      Role::Operator, Beam::MayFire},
@@ -194,7 +235,16 @@ Response command_device(App& app, Request& request) {
         }
     }
     throw bad_field("command",
-                    "must be home, unlock, jog, frame, hold, resume, stop, reset or console");
+                    "must be home, unlock, jog, frame, hold, resume, stop, reset, override, "
+                    "setting or console");
+}
+
+Response list_settings(App& app, Request& request) {
+    json settings = json::array();
+    for (const drivers::MachineSetting& each : find_device(app, request)->settings()) {
+        settings.push_back({{"key", each.key}, {"value", each.value}, {"name", each.name}});
+    }
+    return json_response({{"settings", settings}});
 }
 
 Response list_ports(App&, Request&) {

@@ -49,6 +49,7 @@ Response show_device(App& app, Request& request);
 Response put_device(App& app, Request& request);
 Response delete_device(App& app, Request& request);
 Response command_device(App& app, Request& request);
+Response list_settings(App& app, Request& request);
 Response list_ports(App& app, Request& request);
 
 // materials.cpp

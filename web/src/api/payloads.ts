@@ -13,6 +13,7 @@ import {
   record,
   text,
 } from '../lib/check.ts';
+import type * as wire from './schema.ts';
 import type {
   Artifact,
   Beam,
@@ -73,7 +74,7 @@ const readFile: Reader<Job['file']> = (value, path) => {
 };
 
 export const readJob: Reader<Job> = (value, path) => {
-  const get = record(value, path);
+  const get = record<wire.Job & { readonly priority?: number }>(value, path);
   return {
     id: get('id', text),
     name: get('name', optional(text, '')),
@@ -105,7 +106,7 @@ const readCutProgress: Reader<CutProgress> = (value, path) => {
 const kNoProgress: CutProgress = { linesTotal: 0, linesSent: 0, linesAcknowledged: 0, fraction: 0 };
 
 const readBeam: Reader<Beam> = (value, path) => {
-  const get = record(value, path);
+  const get = record<NonNullable<wire.Cut['beam']>>(value, path);
   return {
     percent: get('percent', optional(number, 0)),
     burntMm: get('burnt_mm', optional(number, 0)),
@@ -119,7 +120,7 @@ const readBeam: Reader<Beam> = (value, path) => {
 };
 
 export const readCut: Reader<Cut> = (value, path) => {
-  const get = record(value, path);
+  const get = record<wire.Cut>(value, path);
   const sheets = get('sheets', list(number));
   return {
     id: get('id', text),
@@ -143,7 +144,7 @@ export const readCut: Reader<Cut> = (value, path) => {
 };
 
 const readStatus: Reader<DeviceStatus> = (value, path) => {
-  const get = record(value, path);
+  const get = record<NonNullable<wire.Device['status']>>(value, path);
   return {
     state: get('state', optional(text, 'unknown')),
     machinePositionMm: get('machine_position_mm', optional(list(number), [])),
@@ -158,7 +159,7 @@ const readStatus: Reader<DeviceStatus> = (value, path) => {
 };
 
 export const readDevice: Reader<Device> = (value, path) => {
-  const get = record(value, path);
+  const get = record<wire.Device>(value, path);
   const id = get('id', text);
   return {
     id,
@@ -179,12 +180,12 @@ const readSize: Reader<{ widthMm: number; heightMm: number }> = (value, path) =>
 };
 
 const readLaser: Reader<Material['cut']> = (value, path) => {
-  const get = record(value, path);
+  const get = record<wire.Laser>(value, path);
   return { feedMmPerMin: get('feed_mm_per_min', optional(number, 1000)), passes: get('passes', optional(number, 1)) };
 };
 
 export const readMaterial: Reader<Material> = (value, path) => {
-  const get = record(value, path);
+  const get = record<wire.Material>(value, path);
   const id = get('id', text);
   return {
     id,
@@ -199,7 +200,7 @@ export const readMaterial: Reader<Material> = (value, path) => {
 };
 
 export const readArtifact: Reader<Artifact> = (value, path) => {
-  const get = record(value, path);
+  const get = record<wire.Artifact>(value, path);
   return {
     path: get('path', text),
     bytes: get('bytes', number),

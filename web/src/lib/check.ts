@@ -50,8 +50,12 @@ export const point: Reader<readonly [number, number]> = (value, path) => {
   return [number(value[0], `${path}/0`), number(value[1], `${path}/1`)];
 };
 
-// Reads the fields of one object: `get('name', text)`.
-export function record(value: unknown, path: string): <T>(key: string, reader: Reader<T>) => T {
+// Reads the fields of one object: `get('name', text)`. With the type that the daemon's description has for
+// it, as record<Schema>, no other key than the described ones can be asked for.
+export function record<Wire = Record<string, unknown>>(
+  value: unknown,
+  path: string,
+): <T>(key: keyof Wire & string, reader: Reader<T>) => T {
   const object = fields(value, path);
   return (key, reader) => reader(object[key], `${path}/${key}`);
 }

@@ -53,7 +53,7 @@ export function Playback(props: {
         type="range"
         min={0}
         max={totalS}
-        step={totalS / 1000}
+        step="any"
         value={seconds}
         aria-label={t.sheets.time}
         aria-valuetext={clock(seconds)}

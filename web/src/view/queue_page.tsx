@@ -174,7 +174,7 @@ function HistoryTable() {
       {jobs.length === 0 ? (
         <p class="quiet">{feed.value.jobs.size === 0 ? t.queue.noHistory : t.queue.notFound}</p>
       ) : (
-        <div class="table-box" tabIndex={0} role="region" aria-label={t.queue.history}>
+        <div class="table-box" tabIndex={0} role="group" aria-label={t.queue.history}>
           <table class="history">
             <thead>
               <tr>

@@ -76,7 +76,7 @@ function CylinderTable(props: { readonly figures: ReportFigures }) {
   return (
     <details class="by-cylinder">
       <summary>{t.report.perCylinder}</summary>
-      <div class="table-box" tabIndex={0} role="region" aria-label={t.report.perCylinder}>
+      <div class="table-box" tabIndex={0} role="group" aria-label={t.report.perCylinder}>
         <table>
           <thead>
             <tr>

@@ -58,8 +58,8 @@ export function StopButton() {
   const only = devices.length === 1 ? devices[0] : undefined;
   const name = only?.name ?? t.stop.all;
   return (
-    <button type="button" class="stop" title={t.stop.hint} aria-label={`${t.stop.button}: ${name}`} onClick={() => void stopAll()}>
-      <span class="stop-word">{t.stop.button}</span>
+    <button type="button" class="stop" title={t.stop.hint} onClick={() => void stopAll()}>
+      <span class="stop-word">{t.stop.button}</span>{' '}
       <span class="stop-name">{name}</span>
     </button>
   );

@@ -77,7 +77,7 @@ export const library = {
     search: 'Suche',
     all: 'Alle Zustände',
     state: 'Zustand',
-    statistics: (jobs: string, strips: string, time: string) => `${jobs} Aufträge, ${strips} Streifen, ${time} am Laser`,
+    statistics: (jobs: string, strips: string, time: string) => `Aufträge: ${jobs} · Streifen: ${strips} · am Laser: ${time}`,
     notFound: 'Nichts dergleichen.',
     columns: { name: 'Name', state: 'Zustand', strips: 'Streifen', sheets: 'Bögen', time: 'Am Laser', date: 'Erstellt' },
   },

@@ -77,7 +77,7 @@ export const library = {
     search: 'Search',
     all: 'All states',
     state: 'State',
-    statistics: (jobs: string, strips: string, time: string) => `${jobs} jobs, ${strips} strips, ${time} at the laser`,
+    statistics: (jobs: string, strips: string, time: string) => `Jobs: ${jobs} · strips: ${strips} · at the laser: ${time}`,
     notFound: 'Nothing like that.',
     columns: { name: 'Name', state: 'State', strips: 'Strips', sheets: 'Sheets', time: 'At the laser', date: 'Made' },
   },

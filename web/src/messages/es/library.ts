@@ -77,7 +77,7 @@ export const library = {
     search: 'Buscar',
     all: 'Todos los estados',
     state: 'Estado',
-    statistics: (jobs: string, strips: string, time: string) => `${jobs} trabajos, ${strips} tiras, ${time} en el láser`,
+    statistics: (jobs: string, strips: string, time: string) => `Trabajos: ${jobs} · tiras: ${strips} · en el láser: ${time}`,
     notFound: 'Nada parecido.',
     columns: { name: 'Nombre', state: 'Estado', strips: 'Tiras', sheets: 'Hojas', time: 'En el láser', date: 'Creado' },
   },

@@ -77,7 +77,7 @@ export const library = {
     search: 'Recherche',
     all: 'Tous les états',
     state: 'État',
-    statistics: (jobs: string, strips: string, time: string) => `${jobs} travaux, ${strips} bandes, ${time} au laser`,
+    statistics: (jobs: string, strips: string, time: string) => `Travaux : ${jobs} · bandes : ${strips} · au laser : ${time}`,
     notFound: 'Rien de tel.',
     columns: { name: 'Nom', state: 'État', strips: 'Bandes', sheets: 'Feuilles', time: 'Au laser', date: 'Créé' },
   },

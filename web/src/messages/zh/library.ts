@@ -77,7 +77,7 @@ export const library = {
     search: '搜索',
     all: '所有状态',
     state: '状态',
-    statistics: (jobs: string, strips: string, time: string) => `${jobs} 个任务，${strips} 条条带，激光 ${time}`,
+    statistics: (jobs: string, strips: string, time: string) => `任务：${jobs} · 条带：${strips} · 激光：${time}`,
     notFound: '没有匹配项。',
     columns: { name: '名称', state: '状态', strips: '条带', sheets: '板材', time: '激光时间', date: '创建时间' },
   },

@@ -164,7 +164,7 @@ export function NewJob() {
       }}
     >
       <header class="panel-head">
-        <h2>{now.again === null ? t.draft.title : t.draft.again(now.again.name)}</h2>
+        <h1>{now.again === null ? t.draft.title : t.draft.again(now.again.name)}</h1>
         {now.again === null && <ChooseFile class="button small" label={t.drop.more} />}
       </header>
       <ul class="draft-files">

@@ -50,7 +50,7 @@ function SettingTable(props: { readonly device: Device }) {
   if (called.state === 'failed') return <p class="quiet">{called.fault}</p>;
   if (called.value.length === 0) return <p class="quiet">{t.machines.noController}</p>;
   return (
-    <div class="table-box" tabIndex={0} role="region" aria-label={t.machines.controller}>
+    <div class="table-box" tabIndex={0} role="group" aria-label={t.machines.controller}>
       <table class="laser-table">
         <tbody>
           {called.value.map((setting) => (

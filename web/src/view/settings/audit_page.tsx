@@ -12,7 +12,7 @@ import { useCall } from '../use_call.ts';
 function Rows(props: { readonly entries: readonly AuditEntry[] }) {
   const { columns, nobody, host } = t.audit;
   return (
-    <div class="table-box" tabIndex={0} role="region" aria-label={t.audit.title}>
+    <div class="table-box" tabIndex={0} role="group" aria-label={t.audit.title}>
       <table class="history">
         <thead>
           <tr>
