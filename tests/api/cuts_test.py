@@ -522,7 +522,7 @@ class Jobs(Served):
         self.assert_problem(self.ask("GET", path + "/package.zip"), 409, "not-ready")
         status, _, job = self.ask("DELETE", path)
         self.assertEqual((status, job["state"]), (200, "cancelled"))
-        self.assertEqual(sorted(job["actions"]), ["recompute", "remove"])
+        self.assertEqual(sorted(job["actions"]), ["recompute", "remove", "retry"])
         self.assertEqual(self.ask("DELETE", path)[0], 204)
         self.assert_problem(self.ask("GET", path), 404, "no-such-job")
         self.assert_problem(self.ask("DELETE", path), 404, "no-such-job")
