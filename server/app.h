@@ -6,17 +6,23 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "server/auth/accounts.h"
+#include "server/auth/audit_log.h"
+#include "server/auth/login_limit.h"
 #include "server/config.h"
 #include "server/http/edge.h"
 #include "server/http/event_hub.h"
+#include "server/http/http_metrics.h"
 #include "server/queue/compute_runner.h"
 #include "server/queue/device_fleet.h"
 #include "server/queue/housekeeper.h"
 #include "server/store/store.h"
+#include "server/webhook/webhook.h"
 
 namespace leafcutter::server {
 
@@ -43,16 +49,22 @@ struct AppParts {
 
 class App {
 public:
-    // Everything runs when this returns. Throws StateDirUnusable, DatabaseUnusable, CannotListen.
+    // Everything runs when this returns. Throws StateDirUnusable, DatabaseUnusable, CannotListen,
+    // and BadConfig for an address that others reach while nobody has an account.
     App(const Config& config, AppParts parts);
 
-    // Running cuts are held and cancelled, running jobs go back to the queue.
+    // Ends as the configuration's stop_policy says; running jobs go back to the queue.
     ~App();
     App(const App&) = delete;
     App& operator=(const App&) = delete;
 
     Store& store() { return *store_; }
     ComputeRunner& compute() { return *compute_; }
+    Accounts& accounts() { return *accounts_; }
+    LoginLimit& login_limit() { return login_limit_; }
+    AuditLog& audit() { return *audit_; }
+    HttpMetrics& http_metrics() { return http_metrics_; }
+    const std::vector<std::unique_ptr<Webhook>>& webhooks() const { return webhooks_; }
     DeviceFleet& fleet() { return *fleet_; }
     Housekeeper& housekeeper() { return *housekeeper_; }
     EventHub& hub() { return hub_; }
@@ -62,14 +74,23 @@ public:
 
 private:
     EventSource event_source();
+    void begin_webhooks(const Config& config);
+    void after_commit();
 
     const AppParts parts_;
     const std::filesystem::path burn_logs_;  // Folder of simulated machines' beam logs.
     EventHub hub_;
     std::unique_ptr<Store> store_;
+    std::unique_ptr<Accounts> accounts_;
+    LoginLimit login_limit_;
+    std::unique_ptr<AuditLog> audit_;
     std::unique_ptr<ComputeRunner> compute_;
     std::unique_ptr<DeviceFleet> fleet_;
     std::unique_ptr<Housekeeper> housekeeper_;
+    const StopPolicy stop_policy_;
+    HttpMetrics http_metrics_;
+    std::mutex webhooks_mutex_;  // Guards the list while it is built and taken down.
+    std::vector<std::unique_ptr<Webhook>> webhooks_;
     std::unique_ptr<Edge> edge_;
 };
 

@@ -10,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include "drivers/device.h"
+#include "server/webhook/post.h"
 
 namespace leafcutter::server {
 
@@ -29,11 +30,10 @@ T value_of(const toml::node& node, const std::string& key, const char* kind) {
     return *value;
 }
 
-unsigned count_of(const toml::node& node, const std::string& key) {
+unsigned count_of(const toml::node& node, const std::string& key, std::int64_t most) {
     const auto value = value_of<std::int64_t>(node, key, "a whole number");
-    constexpr std::int64_t kMost = 256;
-    if (value < 1 || value > kMost) {
-        fail(node.source(), key + ": must be 1 to 256");
+    if (value < 1 || value > most) {
+        fail(node.source(), fmt::format("{}: must be 1 to {}", key, most));
     }
     return static_cast<unsigned>(value);
 }
@@ -74,28 +74,108 @@ DeviceRecord device_of(const toml::table& table) {
     return device;
 }
 
-void read_devices(const toml::node& node, Config& config) {
-    const toml::array* devices = node.as_array();
-    if (devices == nullptr) {
-        fail(node.source(), "device: must be written as [[device]]");
+std::vector<std::string> words_of(const toml::node& node, const std::string& key) {
+    const toml::array* words = node.as_array();
+    if (words == nullptr) {
+        fail(node.source(), key + ": must be a list of strings");
     }
-    for (const toml::node& each : *devices) {
-        const toml::table* table = each.as_table();
-        if (table == nullptr) {
-            fail(each.source(), "device: must be a table");
+    std::vector<std::string> result;
+    for (const toml::node& word : *words) {
+        result.push_back(value_of<std::string>(word, key, "a list of strings"));
+    }
+    return result;
+}
+
+void check_webhook(const WebhookConfig& webhook, const toml::source_region& where) {
+    if (!target_of(webhook.url)) {
+        fail(where, "webhook.url: must be http://… or https://…");
+    }
+    constexpr std::size_t kShortestSecret = 16;
+    if (webhook.secret.size() < kShortestSecret) {
+        fail(where, "webhook.secret: must have 16 bytes at least");
+    }
+    for (const std::string& event : webhook.events) {
+        if (event != "job" && event != "cut") {
+            fail(where, "webhook.events: must be some of \"job\" and \"cut\"");
         }
-        config.devices.push_back(device_of(*table));
     }
 }
 
-void read_hosts(const toml::node& node, Config& config) {
-    const toml::array* hosts = node.as_array();
-    if (hosts == nullptr) {
-        fail(node.source(), "hosts: must be a list of names");
+WebhookConfig webhook_of(const toml::table& table) {
+    WebhookConfig webhook;
+    for (const auto& [key, node] : table) {
+        if (key == "url") {
+            webhook.url = value_of<std::string>(node, "url", "a string");
+        } else if (key == "secret") {
+            webhook.secret = value_of<std::string>(node, "secret", "a string");
+        } else if (key == "events") {
+            webhook.events = words_of(node, "events");
+        } else if (key == "allow_private") {
+            webhook.allow_private = value_of<bool>(node, "allow_private", "true or false");
+        } else {
+            fail(node.source(), fmt::format("webhook.{}: there is no such key", key.str()));
+        }
     }
-    for (const toml::node& host : *hosts) {
-        config.hosts.push_back(value_of<std::string>(host, "hosts", "a list of names"));
+    check_webhook(webhook, table.source());
+    return webhook;
+}
+
+// [[key]] tables, each read by `read`.
+template <typename Read>
+void read_tables(const toml::node& node, const std::string& key, Read read) {
+    const toml::array* tables = node.as_array();
+    if (tables == nullptr) {
+        fail(node.source(), fmt::format("{}: must be written as [[{}]]", key, key));
     }
+    for (const toml::node& each : *tables) {
+        const toml::table* table = each.as_table();
+        if (table == nullptr) {
+            fail(each.source(), key + ": must be a table");
+        }
+        read(*table);
+    }
+}
+
+StopPolicy stop_policy_of(const toml::node& node) {
+    const auto word = value_of<std::string>(node, "stop_policy", "a string");
+    if (word == "pause") {
+        return StopPolicy::Pause;
+    }
+    if (word == "finish") {
+        return StopPolicy::Finish;
+    }
+    if (word == "abort") {
+        return StopPolicy::Abort;
+    }
+    fail(node.source(), "stop_policy: must be pause, finish or abort");
+}
+
+LogFormat log_format_of(const toml::node& node) {
+    const auto word = value_of<std::string>(node, "log_format", "a string");
+    if (word != "text" && word != "json") {
+        fail(node.source(), "log_format: must be text or json");
+    }
+    return word == "json" ? LogFormat::Json : LogFormat::Text;
+}
+
+bool read_count(std::string_view key, const toml::node& node, Config& config) {
+    struct Count {
+        std::string_view name;
+        unsigned* count;
+        std::int64_t most;
+    };
+    const Count counts[] = {{"http_workers", &config.http_workers, 256},
+                            {"compute_workers", &config.compute_workers, 256},
+                            {"threads_per_job", &config.threads_per_job, 256},
+                            {"job_memory_mb", &config.job_memory_mb, 1 << 24},
+                            {"job_minutes", &config.job_minutes, 60 * 24 * 30}};
+    for (const auto& [name, count, most] : counts) {
+        if (key == name) {
+            *count = count_of(node, std::string(name), most);
+            return true;
+        }
+    }
+    return false;
 }
 
 void read_key(std::string_view key, const toml::node& node, Config& config) {
@@ -104,16 +184,22 @@ void read_key(std::string_view key, const toml::node& node, Config& config) {
     } else if (key == "state") {
         config.state = value_of<std::string>(node, "state", "a string");
     } else if (key == "hosts") {
-        read_hosts(node, config);
-    } else if (key == "http_workers") {
-        config.http_workers = count_of(node, "http_workers");
-    } else if (key == "compute_workers") {
-        config.compute_workers = count_of(node, "compute_workers");
-    } else if (key == "threads_per_job") {
-        config.threads_per_job = count_of(node, "threads_per_job");
+        config.hosts = words_of(node, "hosts");
+    } else if (key == "trusted_proxies") {
+        config.trusted_proxies = words_of(node, "trusted_proxies");
+    } else if (key == "stop_policy") {
+        config.stop_policy = stop_policy_of(node);
+    } else if (key == "log_format") {
+        config.log_format = log_format_of(node);
     } else if (key == "device") {
-        read_devices(node, config);
-    } else {
+        read_tables(node, "device", [&config](const toml::table& table) {
+            config.devices.push_back(device_of(table));
+        });
+    } else if (key == "webhook") {
+        read_tables(node, "webhook", [&config](const toml::table& table) {
+            config.webhooks.push_back(webhook_of(table));
+        });
+    } else if (!read_count(key, node, config)) {
         fail(node.source(), fmt::format("{}: there is no such key", key));
     }
 }
@@ -131,21 +217,17 @@ ListenAddress parse_listen(const std::string& text) {
         throw BadConfig(fmt::format("listen: {} is no ADDRESS:PORT", text));
     }
     std::string address = text.substr(0, colon);
-    if (address == "[::1]") {
-        address = "::1";
-    }
-    const bool loopback = address == "localhost" || address == "::1" || address.starts_with("127.");
-    if (!address.empty() && !loopback) {
-        throw BadConfig(
-            fmt::format("listen: {} is not on the loopback interface; other addresses need "
-                        "accounts, which this "
-                        "version does not have: listen on 127.0.0.1",
-                        address));
+    if (address.size() > 2 && address.front() == '[' && address.back() == ']') {
+        address = address.substr(1, address.size() - 2);
     }
     if (!address.empty()) {
         listen.address = address == "localhost" ? "127.0.0.1" : address;
     }
     return listen;
+}
+
+bool is_loopback(const std::string& address) {
+    return address == "localhost" || address == "::1" || address.starts_with("127.");
 }
 
 Config read_config(const std::filesystem::path& file) {

@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "server/log_format.h"
+#include "server/queue/device_runner.h"
 #include "server/store/records.h"
+#include "server/webhook/webhook.h"
 
 namespace leafcutter::server {
 
@@ -25,17 +28,25 @@ struct ListenAddress {
 
 struct Config {
     ListenAddress listen;
-    std::filesystem::path state;     // Empty: default_state_dir().
-    std::vector<std::string> hosts;  // Further names in Host headers that are ours.
+    std::filesystem::path state;               // Empty: default_state_dir().
+    std::vector<std::string> hosts;            // Further names in Host headers that are ours.
+    std::vector<std::string> trusted_proxies;  // Addresses whose X-Forwarded-… are believed.
     unsigned http_workers = 8;
     unsigned compute_workers = 1;
     unsigned threads_per_job = 0;  // 0: as many as the machine has.
+    unsigned job_memory_mb = 0;  // Of one computation; 0: three quarters of the machine's, shared.
+    unsigned job_minutes = 60;   // Likewise its time.
+    StopPolicy stop_policy = StopPolicy::Pause;
+    LogFormat log_format = LogFormat::Text;
     std::vector<DeviceRecord> devices;
+    std::vector<WebhookConfig> webhooks;
 };
 
-// "127.0.0.1:8080", "[::1]:8080" or ":8080". Throws BadConfig; also for an address that is not
-// loopback, since there are no accounts yet.
+// "127.0.0.1:8080", "[::1]:8080", "0.0.0.0:8080" or ":8080" (loopback). Throws BadConfig.
 ListenAddress parse_listen(const std::string& text);
+
+// Only this host can reach it.
+bool is_loopback(const std::string& address);
 
 // Throws BadConfig for what can't be read, unknown keys included.
 Config read_config(const std::filesystem::path& file);

@@ -15,7 +15,7 @@ MODULES = {
 # Header (regular expression) -> files (regular expressions) that may include it.
 PINNED = {
     r"nlohmann/.*": [r"fab/package/.*\.(h|cpp)", r"fab/nest/instance_io\.cpp", r"fab/export/gltf\.cpp", r"server/.*"],
-    r"httplib\.h": [r"server/http/edge\.(h|cpp)", r"server/cli/.*\.cpp"],
+    r"httplib\.h": [r"server/http/edge\.(h|cpp)", r"server/webhook/post\.cpp", r"server/cli/.*\.cpp"],
     r"SQLiteCpp/.*|sqlite3\.h": [r"server/store/.*\.cpp"],
     r"CLI/.*": [r"server/cli/.*\.cpp", r"server/main\.cpp"],
     r"spdlog/.*": [r"server/.*", r"drivers/.*"],
@@ -27,6 +27,7 @@ PINNED = {
     r"OpenMesh/.*": [r"geometry/mesh\.h"],
     r"termios\.h|asm/termbits\.h|sys/ioctl\.h|pty\.h": [r"drivers/.*", r"server/cli/.*"],
     r"sys/socket\.h|netdb\.h|arpa/inet\.h": [r"drivers/.*", r"server/.*"],
+    r"sodium\.h": [r"server/auth/secrets\.cpp"],
     r"libusb.*": [r"drivers/usb_(context|pipe|watch)\.(h|cpp)"],
 }
 

@@ -1,20 +1,26 @@
 // leafcutter serve: the daemon.
 
+#include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <unistd.h>
+#include <utility>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "drivers/device.h"
 #include "server/app.h"
 #include "server/cli/command.h"
 #include "server/cli/interrupt.h"
+#include "server/cli/service_notice.h"
+#include "server/log_format.h"
+#include "server/queue/compute_child.h"
 #include "server/recut_compute.h"
 #include "server/weave_compute.h"
 
@@ -53,24 +59,45 @@ void wait_for_stop(const std::stop_token& stop) {
     never.wait(lock, stop, [] { return false; });
 }
 
+std::unique_ptr<App> started(const Config& config, AppParts parts) {
+    try {
+        return std::make_unique<App>(config, std::move(parts));
+    } catch (const BadConfig& error) {
+        throw UsageError(error.what());
+    }
+}
+
+ComputeBudget budget_of(const Config& config) {
+    ComputeBudget budget;
+    budget.memory_bytes = std::uint64_t{config.job_memory_mb} << 20U;
+    if (budget.memory_bytes == 0) {
+        const auto pages = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES));
+        const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+        budget.memory_bytes = pages * page / 4 * 3 / std::max(1U, config.compute_workers);
+    }
+    budget.time = std::chrono::minutes(config.job_minutes);
+    return budget;
+}
+
 void serve(const ServeOptions& options) {
     std::signal(SIGPIPE, SIG_IGN);
     const InterruptWatch interrupt;
     const Config config = wanted_config(options);
-    spdlog::set_default_logger(spdlog::stderr_color_mt("leafcutter"));
-    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+    begin_log(config.log_format);
     AppParts parts;
-    parts.compute = weave_job;
+    parts.compute = compute_in_child(budget_of(config));
     parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
     parts.check_params = check_job_params;
     parts.recut = recut_job_pieces;
-    App app(config, std::move(parts));
+    const std::unique_ptr<App> app = started(config, std::move(parts));
     const bool v6 = config.listen.address.find(':') != std::string::npos;
     const std::string address = v6 ? "[" + config.listen.address + "]" : config.listen.address;
-    std::printf("leafcutter: http://%s:%d/\n", address.c_str(), app.port());
+    std::printf("leafcutter: http://%s:%d/\n", address.c_str(), app->port());
     std::fflush(stdout);
     spdlog::info("state in {}", config.state.string());
+    notify_service_manager("READY=1");
     wait_for_stop(interrupt.token());
+    notify_service_manager("STOPPING=1");
     spdlog::info("stopping");
 }
 

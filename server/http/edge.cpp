@@ -6,6 +6,7 @@
 #include <cstring>
 #include <deque>
 #include <mutex>
+#include <netdb.h>
 #include <semaphore>
 #include <sys/socket.h>
 #include <system_error>
@@ -58,6 +59,21 @@ private:
     std::string head_;
     std::size_t read_ = 0;
 };
+
+// Numeric, as getnameinfo writes it; empty if the connection is gone.
+std::string address_of_peer(int fd) {
+    sockaddr_storage address{};
+    socklen_t size = sizeof address;
+    std::array<char, NI_MAXHOST> text{};
+    auto* generic = reinterpret_cast<sockaddr*>(&address);
+    if (::getpeername(fd, generic, &size) != 0 ||
+        ::getnameinfo(generic, size, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0) {
+        return {};
+    }
+    const std::string_view mapped = "::ffff:";  // IPv4 on a socket of both kinds.
+    std::string result = text.data();
+    return result.starts_with(mapped) ? result.substr(mapped.size()) : result;
+}
 
 // The library's accept loop hands over connections; parking them takes no thread.
 class InlineQueue : public httplib::TaskQueue {
@@ -126,7 +142,7 @@ public:
         new_task_queue = [] { return new InlineQueue; };
         set_keep_alive_timeout(options.parking.idle_time.count() / 1000);
         set_pre_routing_handler([this](const httplib::Request&, httplib::Response& out) {
-            answer(*in_hand_, out);
+            answer(*in_hand, out);
             return HandlerResponse::Handled;
         });
         listen_on();
@@ -234,7 +250,8 @@ private:
 
     void serve(Task& task) {
         const std::size_t end = task.bytes.find("\r\n\r\n") + 4;
-        auto vetted = vet_head(std::string_view(task.bytes).substr(0, end), options_.rules);
+        auto vetted = vet_head(std::string_view(task.bytes).substr(0, end), options_.rules,
+                               address_of_peer(task.fd));
         if (const auto* refusal = std::get_if<Refusal>(&vetted)) {
             refuse(task.fd, *refusal);
             return;
@@ -244,13 +261,13 @@ private:
                               {options_.patience, options_.least_bytes_per_s});
         connection.expect_body(head.request.body.bytes, head.expects_continue);
         Exchange exchange{connection, head, std::nullopt};
-        in_hand_ = &exchange;
+        in_hand = &exchange;
         VettedStream stream(
             connection, fmt::format("{} / HTTP/1.1\r\nHost: localhost\r\nConnection: {}\r\n\r\n",
                                     head.request.method, head.keep_alive ? "keep-alive" : "close"));
         bool closed = false;
         const bool written = process_request(stream, !head.keep_alive, closed, nullptr);
-        in_hand_ = nullptr;
+        in_hand = nullptr;
         if (exchange.events) {
             hub_.adopt(task.fd, *exchange.events);
         } else if (written && !closed && head.keep_alive && connection.body_left() == 0) {
@@ -330,7 +347,7 @@ private:
         parking_.drain(fd);
     }
 
-    static thread_local Exchange* in_hand_;  // The worker's; the library's handler can't carry it.
+    static thread_local Exchange* in_hand;  // The worker's; the library's handler can't carry it.
 
     const EdgeOptions options_;
     const RequestHandler handler_;
@@ -348,7 +365,7 @@ private:
     std::jthread acceptor_;
 };
 
-thread_local Edge::Server::Exchange* Edge::Server::in_hand_ = nullptr;
+thread_local Edge::Server::Exchange* Edge::Server::in_hand = nullptr;
 
 Edge::Edge(const EdgeOptions& options, RequestHandler handler, EventHub& hub)
     : server_(std::make_unique<Server>(options, std::move(handler), hub)) {}

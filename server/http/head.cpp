@@ -127,14 +127,17 @@ std::optional<Refusal> read_header(std::string_view line, Request& request) {
     if (is_new) {
         return std::nullopt;
     }
-    constexpr std::array<std::string_view, 8> kOnce{"host",
-                                                    "content-length",
-                                                    "transfer-encoding",
-                                                    "content-type",
-                                                    "content-encoding",
-                                                    "range",
-                                                    "authorization",
-                                                    "origin"};
+    constexpr std::array<std::string_view, 11> kOnce{"host",
+                                                     "content-length",
+                                                     "transfer-encoding",
+                                                     "content-type",
+                                                     "content-encoding",
+                                                     "range",
+                                                     "authorization",
+                                                     "cookie",
+                                                     "x-api-key",
+                                                     "x-forwarded-proto",
+                                                     "origin"};
     if (std::find(kOnce.begin(), kOnce.end(), key) != kOnce.end()) {
         return bad_request(fmt::format("the header {} came twice", key));
     }
@@ -165,7 +168,9 @@ std::optional<Refusal> judge_origin(const Request& request) {
     }
     const Refusal foreign{403, "cross-origin", "a page of another site may not do this"};
     const auto origin = request.header("origin");
-    if (origin && lowered(*origin) != "http://" + lowered(request.headers.at("host"))) {
+    const std::string_view scheme = request.is_secure ? "https" : "http";
+    if (origin &&
+        lowered(*origin) != fmt::format("{}://{}", scheme, lowered(request.headers.at("host")))) {
         return foreign;
     }
     const std::string site = request.header("sec-fetch-site").value_or("none");
@@ -173,6 +178,28 @@ std::optional<Refusal> judge_origin(const Request& request) {
         return foreign;
     }
     return std::nullopt;
+}
+
+// Who is at the other end, as far as it can be believed: the last hop that no proxy of ours is.
+void see_through_proxies(Request& request, const HeadRules& rules, const std::string& peer) {
+    const auto is_trusted = [&rules](std::string_view address) {
+        return std::find(rules.trusted_proxies.begin(), rules.trusted_proxies.end(), address) !=
+               rules.trusted_proxies.end();
+    };
+    request.remote = peer;
+    if (!is_trusted(peer)) {
+        return;
+    }
+    request.is_secure = lowered(request.header("x-forwarded-proto").value_or("")) == "https";
+    const std::string forwarded = request.header("x-forwarded-for").value_or("");
+    std::string_view hops = forwarded;
+    while (!hops.empty() && is_trusted(request.remote)) {
+        const std::size_t comma = hops.rfind(',');
+        const std::string_view hop =
+            comma == std::string_view::npos ? hops : hops.substr(comma + 1);
+        hops = comma == std::string_view::npos ? "" : hops.substr(0, comma);
+        request.remote = trimmed(hop);
+    }
 }
 
 std::optional<Refusal> judge_body(VettedHead& head) {
@@ -212,7 +239,9 @@ std::optional<Refusal> judge_range(const Request& request) {
 
 }  // namespace
 
-std::variant<VettedHead, Refusal> vet_head(std::string_view text, const HeadRules& rules) {
+std::variant<VettedHead, Refusal> vet_head(std::string_view text,
+                                           const HeadRules& rules,
+                                           const std::string& peer) {
     if (text.size() > HeadRules::kMostBytes) {
         return Refusal{431, "head-too-large", "the head is larger than 16 kB"};
     }
@@ -240,6 +269,7 @@ std::variant<VettedHead, Refusal> vet_head(std::string_view text, const HeadRule
             return *refusal;
         }
     }
+    see_through_proxies(head.request, rules, peer);
     std::optional<Refusal> refusal = judge_host(head.request, rules);
     refusal = refusal ? refusal : judge_origin(head.request);
     refusal = refusal ? refusal : judge_body(head);

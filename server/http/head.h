@@ -19,6 +19,9 @@ struct HeadRules {
     static constexpr std::size_t kLongestPath = 1024;
 
     std::vector<std::string> hosts{"localhost", "127.0.0.1", "[::1]"};  // Without port.
+
+    // Addresses whose X-Forwarded-For and X-Forwarded-Proto are believed.
+    std::vector<std::string> trusted_proxies;
 };
 
 struct Refusal {
@@ -33,7 +36,9 @@ struct VettedHead {
     bool expects_continue = false;
 };
 
-// `head` ends with the empty line.
-std::variant<VettedHead, Refusal> vet_head(std::string_view head, const HeadRules& rules);
+// `head` ends with the empty line. `peer` is the address at the connection's other end.
+std::variant<VettedHead, Refusal> vet_head(std::string_view head,
+                                           const HeadRules& rules,
+                                           const std::string& peer = {});
 
 }  // namespace leafcutter::server

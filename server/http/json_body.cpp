@@ -76,6 +76,18 @@ std::string read_body(const Request& request, std::int64_t most) {
     return body;
 }
 
+std::string text_field(const json& object, const char* key) {
+    const auto found = object.find(key);
+    if (found == object.end() || !found->is_string()) {
+        throw HttpProblem(422, "bad-field", fmt::format("{}: must be a string", key));
+    }
+    return found->get<std::string>();
+}
+
+std::string text_field_or(const json& object, const char* key, const std::string& otherwise) {
+    return object.contains(key) ? text_field(object, key) : otherwise;
+}
+
 json read_json_object(const Request& request) {
     const std::string type = request.header("content-type").value_or("application/json");
     if (type.find("json") == std::string::npos) {

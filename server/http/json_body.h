@@ -23,6 +23,13 @@ std::string dump_json(const nlohmann::json& value);
 // The whole body, up to `most` bytes. Throws HttpProblem (413).
 std::string read_body(const Request& request, std::int64_t most);
 
+// A member that is text. Throws HttpProblem (422) if it is anything else; text_field() also if
+// there is none.
+std::string text_field(const nlohmann::json& object, const char* key);
+std::string text_field_or(const nlohmann::json& object,
+                          const char* key,
+                          const std::string& otherwise);
+
 // The body as a JSON object; an empty one if there is none. Throws HttpProblem.
 nlohmann::json read_json_object(const Request& request);
 

@@ -6,6 +6,7 @@
 
 #include "drivers/device.h"
 #include "geometry/error.h"
+#include "server/auth/accounts.h"
 #include "server/http/json_body.h"
 #include "server/store/cut_store.h"
 #include "server/store/job_store.h"
@@ -19,6 +20,8 @@ std::string_view title_of(int status) {
     switch (status) {
         case 400:
             return "The request is malformed";
+        case 401:
+            return "Who are you?";
         case 403:
             return "Not allowed";
         case 404:
@@ -41,6 +44,8 @@ std::string_view title_of(int status) {
             return "Wrong host";
         case 422:
             return "A value is not possible";
+        case 429:
+            return "Too many tries";
         case 431:
             return "The head is too large";
         case 503:
@@ -124,6 +129,12 @@ Response response_to(const std::exception& error) {
     }
     if (dynamic_cast<const KeyReused*>(&error) != nullptr) {
         return problem_response({422, "idempotency-key-reused", error.what()});
+    }
+    if (dynamic_cast<const BadAccount*>(&error) != nullptr) {
+        return problem_response({422, "bad-field", error.what()});
+    }
+    if (dynamic_cast<const LastAdmin*>(&error) != nullptr) {
+        return problem_response({409, "last-admin", error.what()});
     }
     if (dynamic_cast<const BlobWriteFailed*>(&error) != nullptr) {
         spdlog::error("blob store: {}", error.what());

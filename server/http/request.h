@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "server/auth/role.h"
+
 namespace leafcutter::server {
 
 // The body on its way in, never held as a whole.
@@ -29,6 +31,10 @@ struct Request {
     std::map<std::string, std::string> headers;   // Names in lower case.
     std::map<std::string, std::string> captures;  // The {names} of the route.
     RequestBody body;
+    std::string remote;      // The client's address, or what a trusted proxy says it is.
+    bool is_secure = false;  // By TLS, as far as the last trusted proxy.
+    Caller caller;           // Found out by the router.
+    std::string audit_note;  // What the path doesn't say of the action; for the audit log.
 
     std::optional<std::string> header(const std::string& lower_name) const;
     const std::string& capture(const std::string& name) const { return captures.at(name); }

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "server/auth/role.h"
 #include "server/http/request.h"
 #include "server/http/response.h"
 
@@ -15,17 +16,25 @@ class App;
 
 using Handler = Response (*)(App& app, Request& request);
 
+// Whether a call can turn the beam on: then a key must have been given that right by name.
+enum class Beam { Off, MayFire };
+
 struct Route {
     std::string_view method;
     std::string_view pattern;  // "{name}" is one segment, "{name...}" all the rest.
     Handler handler;
+    Role least;  // Who may call it; handlers ask for more where it depends on the body.
+    Beam beam = Beam::Off;
 };
 
 std::span<const Route> routes();
 
-// Finds the route, fills `request.captures`, calls. Throws HttpProblem (404, 405) and what handlers
-// throw.
+// Finds out who calls, finds the route, fills `request.captures`, calls. Throws HttpProblem (401,
+// 403, 404, 405) and what handlers throw.
 Response route(App& app, Request& request);
+
+// The same with every exception translated, and what was done written into the audit log.
+Response answer(App& app, Request& request);
 
 // Whether `path` has the form of `pattern`; fills `captures`.
 bool matches(std::string_view pattern, std::string_view path, Request& request);

@@ -1,6 +1,7 @@
 #include "server/queue/device_fleet.h"
 
 #include <algorithm>
+#include <chrono>
 #include <thread>
 #include <utility>
 
@@ -78,6 +79,19 @@ void DeviceFleet::remove(const std::string& id) {
     if (found != runners_.end()) {
         old = std::move(found->second);
         runners_.erase(found);
+    }
+}
+
+void DeviceFleet::finish_sheets() {
+    const std::vector<std::shared_ptr<DeviceRunner>> runners = all();
+    for (const auto& runner : runners) {
+        runner->take_no_more();
+    }
+    constexpr std::chrono::milliseconds kLookEvery{100};
+    for (const auto& runner : runners) {
+        while (runner->current_cut()) {
+            std::this_thread::sleep_for(kLookEvery);  // Minutes, often: nobody waits for this.
+        }
     }
 }
 

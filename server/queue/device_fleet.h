@@ -27,6 +27,9 @@ public:
     void put(const DeviceRecord& device);
     void remove(const std::string& id);
 
+    // Sheets in work go on, nothing else is begun; returns when no machine is at work.
+    void finish_sheets();
+
     // Stops every machine, each holding its cut; returns when all stand.
     void stop_all();
 

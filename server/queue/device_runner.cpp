@@ -90,6 +90,9 @@ void DeviceRunner::step() {
 }
 
 void DeviceRunner::take_up_next() {
+    if (closing_) {
+        return;
+    }
     std::optional<std::string> frame;
     {
         const std::scoped_lock lock(mutex_);
@@ -213,7 +216,8 @@ void DeviceRunner::wind_down() {
     drivers::JobProgress last = machine->progress();
     close_beam(last);
     if (last.outcome != JobOutcome::Done) {
-        last.outcome = JobOutcome::LinkLost;
+        const bool aborts = hooks_.stop_policy == StopPolicy::Abort;
+        last.outcome = aborts ? JobOutcome::Aborted : JobOutcome::LinkLost;
         last.reason = "the daemon was stopped";
     }
     settle(last);

@@ -23,11 +23,16 @@
 
 namespace leafcutter::server {
 
+// What becomes of a cut in work when the daemon stops. Finish waits for the end of its sheet before
+// the runners are stopped (take_no_more()); a runner that is stopped all the same pauses.
+enum class StopPolicy { Pause, Finish, Abort };
+
 struct DeviceHooks {
     // Opens a machine; throws LinkLost or std::invalid_argument.
     std::function<std::unique_ptr<drivers::Device>(std::string_view uri)> open;
     std::function<void(const std::string& device)> on_device;  // Its status changed; <= 5 Hz.
     std::function<void(const std::string& cut)> on_cut;        // Its progress or actions changed.
+    StopPolicy stop_policy = StopPolicy::Pause;
 };
 
 // Whether the machine's link may be opened at once, or only after an operator looked at it: opening
@@ -56,6 +61,9 @@ public:
 
     // There may be an armed cut.
     void wake();
+
+    // From now on nothing new is begun; the sheet in work goes on.
+    void take_no_more() { closing_ = true; }
 
     // Something was plugged in: its machine may be back.
     void look_for_machine();
@@ -117,6 +125,7 @@ private:
     std::atomic<bool> look_at_queue_{true};
     std::atomic<bool> queue_changed_{false};  // What its cuts allow may have changed with it.
     std::atomic<bool> framing_{false};
+    std::atomic<bool> closing_{false};
     std::atomic<bool> word_given_{false};  // By a reset since the last cut began.
 
     mutable std::mutex mutex_;  // Guards the members up to the next blank line.

@@ -4,15 +4,21 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 
+#include "server/latency_histogram.h"
+#include "server/store/account_store.h"
 #include "server/store/cut_store.h"
 #include "server/store/device_store.h"
 #include "server/store/event_log.h"
 #include "server/store/job_store.h"
 #include "server/store/named_records.h"
+#include "server/store/queue_ages.h"
 #include "server/store/settings.h"
 #include "server/store/stock_store.h"
+#include "server/store/webhook_store.h"
 
 namespace leafcutter::server {
 
@@ -28,6 +34,12 @@ public:
     virtual NamedRecords& presets() = 0;
     virtual Settings& settings() = 0;
     virtual EventLog& events() = 0;
+    virtual AccountStore& accounts() = 0;
+    virtual WebhookStore& webhooks() = 0;
+    virtual QueueAges queue_ages() const = 0;
+
+    // Of every commit, sync included.
+    virtual const LatencyHistogram& commit_latency() const = 0;
 
     // Why it takes no changes; empty: it does. Never throws.
     virtual std::string trouble() const = 0;
@@ -39,5 +51,15 @@ public:
     // Throws StoreError.
     virtual void back_up_to(const std::filesystem::path& file) const = 0;
 };
+
+struct OpenedEngine {
+    std::unique_ptr<Engine> engine;
+    std::string notice;     // What was done to make it usable, for people; empty: nothing.
+    bool restored = false;  // It is what a backup holds: older than what happened since.
+};
+
+// The engine of a state folder, opened or created. `after_commit` is called by a thread of the
+// engine and must not wait. Throws DatabaseUnusable.
+OpenedEngine open_engine(const std::filesystem::path& folder, std::function<void()> after_commit);
 
 }  // namespace leafcutter::server

@@ -40,6 +40,8 @@ public:
     NamedRecords& presets;
     Settings& settings;
     EventLog& events;
+    AccountStore& accounts;
+    WebhookStore& webhooks;
     std::vector<std::string> interrupted_devices;  // Whose cut a dead daemon left in mid-beam.
 
     // Why it takes no changes; empty: it does.
@@ -47,6 +49,9 @@ public:
 
     // What people have to know of how it was opened; empty: nothing.
     const std::string& notice() const { return notice_; }
+
+    QueueAges queue_ages() const { return engine_->queue_ages(); }
+    const LatencyHistogram& commit_latency() const { return engine_->commit_latency(); }
 
     // What is wrong with the rows; empty: nothing. Slow, beside the work.
     std::string check() const { return engine_->check(); }

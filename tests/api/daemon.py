@@ -20,10 +20,10 @@ def free_port():
 
 
 class Daemon:
-    def __init__(self, state, port):
+    def __init__(self, state, port, *options, address="127.0.0.1"):
         self.port = port
         self.process = subprocess.Popen(
-            [BINARY, "serve", "--state", str(state), "--listen", f"127.0.0.1:{port}"],
+            [BINARY, "serve", "--state", str(state), "--listen", f"{address}:{port}", *options],
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         line = self.process.stdout.readline()
         if "http://" not in line:

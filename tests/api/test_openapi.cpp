@@ -1,5 +1,6 @@
 #include <set>
 #include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -10,7 +11,8 @@
 namespace leafcutter::server {
 namespace {
 
-using Call = std::pair<std::string, std::string>;
+// Method, path, least role, and whether it may fire.
+using Call = std::tuple<std::string, std::string, std::string, bool>;
 
 std::set<Call> described_calls() {
     const nlohmann::json api = nlohmann::json::parse(find_embedded("openapi.json")->bytes);
@@ -18,7 +20,8 @@ std::set<Call> described_calls() {
     for (const auto& [path, item] : api.at("paths").items()) {
         for (const auto& [method, operation] : item.items()) {
             if (method != "parameters") {
-                calls.emplace(method, path);
+                calls.emplace(method, path, operation.at("x-role"),
+                              operation.value("x-may-fire", false));
             }
         }
     }
@@ -41,12 +44,12 @@ std::set<Call> routed_calls() {
         for (char& letter : method) {
             letter = static_cast<char>(letter - 'A' + 'a');
         }
-        calls.emplace(method, path);
+        calls.emplace(method, path, to_string(route.least), route.beam == Beam::MayFire);
     }
     return calls;
 }
 
-TEST(OpenApi, DescribesExactlyTheCallsThatExist) {
+TEST(OpenApi, DescribesExactlyTheCallsThatExistAndTheirRoles) {
     EXPECT_EQ(described_calls(), routed_calls());
 }
 

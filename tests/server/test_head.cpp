@@ -53,6 +53,19 @@ TEST(Head, AnswersOnlyToItsOwnNames) {
     EXPECT_EQ(verdict("GET / HTTP/1.1\r\n\r\n"), 400);
 }
 
+TEST(Head, BelievesOnlyTrustedProxies) {
+    HeadRules rules;
+    rules.trusted_proxies = {"10.0.0.1", "10.0.0.2"};
+    const std::string head = with(
+        "X-Forwarded-For: 1.2.3.4, 9.9.9.9, 10.0.0.2\r\nX-Forwarded-Proto: https\r\n"
+        "Origin: https://localhost:8080\r\n");
+    const auto through = std::get<VettedHead>(vet_head(head, rules, "10.0.0.1"));
+    EXPECT_EQ(through.request.remote, "9.9.9.9");
+    EXPECT_TRUE(through.request.is_secure);
+    const auto direct = vet_head(head, rules, "9.9.9.9");
+    EXPECT_EQ(std::get<Refusal>(direct).status, 403) << "the origin is of another scheme";
+}
+
 TEST(Head, RefusesOtherSitesUnsafeMethods) {
     EXPECT_EQ(verdict(with("Origin: http://localhost:8080\r\n")), 0);
     EXPECT_EQ(verdict(with("Origin: http://evil.example\r\n")), 403);

@@ -13,6 +13,7 @@
 #include "server/http/api/handlers.h"
 #include "server/http/api/lookup.h"
 #include "server/http/api/views.h"
+#include "server/http/guard.h"
 #include "server/http/json_body.h"
 #include "server/http/problem.h"
 
@@ -108,6 +109,8 @@ using Command = void (*)(DeviceRunner& runner, const json& body);
 struct NamedCommand {
     std::string_view name;
     Command act;
+    Role least = Role::Operator;
+    Beam beam = Beam::Off;
 };
 
 constexpr NamedCommand kCommands[] = {
@@ -115,12 +118,14 @@ constexpr NamedCommand kCommands[] = {
     {"unlock", [](DeviceRunner& runner, const json&) { runner.unlock(); }},
     {"jog", [](DeviceRunner& runner, const json& body) { runner.jog(jog_in(body)); }},
     {"frame", [](DeviceRunner& runner, const json&) { runner.frame(); }},
-    {"hold", [](DeviceRunner& runner, const json&) { runner.hold(); }},
-    {"resume", [](DeviceRunner& runner, const json&) { runner.resume(); }},
-    {"stop", [](DeviceRunner& runner, const json&) { runner.stop(); }},
+    {"hold", [](DeviceRunner& runner, const json&) { runner.hold(); }, Role::Viewer},
+    {"resume", [](DeviceRunner& runner, const json&) { runner.resume(); }, Role::Operator,
+     Beam::MayFire},
+    {"stop", [](DeviceRunner& runner, const json&) { runner.stop(); }, Role::Viewer},
     {"reset", [](DeviceRunner& runner, const json&) { runner.reset(); }},
     {"console",
-     [](DeviceRunner& runner, const json& body) { runner.console(console_line_in(body)); }},
+     [](DeviceRunner& runner, const json& body) { runner.console(console_line_in(body)); },
+     Role::Operator, Beam::MayFire},
 };
 
 }  // namespace
@@ -163,6 +168,8 @@ Response command_device(App& app, Request& request) {
     const auto name = body.find("command");
     for (const NamedCommand& command : kCommands) {
         if (name != body.end() && *name == command.name) {
+            request.audit_note = command.name;
+            admit(request, command.least, command.beam);
             command.act(*runner, body);
             return json_response(json::object(), 202);
         }

@@ -78,6 +78,22 @@ Response change_retention(App& app, Request& request);
 Response list_backups(App& app, Request& request);
 Response make_backup(App& app, Request& request);
 
+// session.cpp
+Response show_session(App& app, Request& request);
+Response log_in(App& app, Request& request);
+Response log_out(App& app, Request& request);
+
+// accounts.cpp
+Response list_users(App& app, Request& request);
+Response add_user(App& app, Request& request);
+Response show_user(App& app, Request& request);
+Response change_user(App& app, Request& request);
+Response delete_user(App& app, Request& request);
+Response list_keys(App& app, Request& request);
+Response add_key(App& app, Request& request);
+Response delete_key(App& app, Request& request);
+Response list_audit(App& app, Request& request);
+
 // events.cpp
 Response stream_events(App& app, Request& request);
 Response stream_job_events(App& app, Request& request);

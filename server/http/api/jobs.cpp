@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -63,21 +62,10 @@ NewJob job_from_form(App& app, const Request& request) {
     return job;
 }
 
-std::string text_at(const json& body, const char* key, const std::string& otherwise) {
-    const auto found = body.find(key);
-    if (found == body.end()) {
-        return otherwise;
-    }
-    if (!found->is_string()) {
-        throw HttpProblem(422, "bad-field", fmt::format("{}: must be a string", key));
-    }
-    return found->get<std::string>();
-}
-
 NewJob job_from_json(App& app, const Request& request) {
     const json body = read_json_object(request);
     NewJob job;
-    job.file.sha256 = text_at(body, "blob", "");
+    job.file.sha256 = text_field_or(body, "blob", "");
     const auto bytes =
         is_sha256(job.file.sha256) ? app.store().blobs.size(job.file.sha256) : std::nullopt;
     if (!bytes) {
@@ -85,8 +73,8 @@ NewJob job_from_json(App& app, const Request& request) {
                           "blob: there is none of that name; PUT it to /blobs first");
     }
     job.file.bytes = *bytes;
-    job.name = text_at(body, "name", "");
-    job.file.name = text_at(body, "file_name", job.name);
+    job.name = text_field_or(body, "name", "");
+    job.file.name = text_field_or(body, "file_name", job.name);
     job.params_json = dump_json(body.value("params", json::object()));
     return job;
 }
@@ -106,7 +94,8 @@ std::optional<IdempotencyKey> key_of(const Request& request, const NewJob& job) 
         return std::nullopt;
     }
     return IdempotencyKey{
-        *key, sha256_of(fmt::format("{}\n{}\n{}", job.file.sha256, job.name, job.params_json))};
+        fmt::format("{}/{}", request.caller.name, *key),
+        sha256_of(fmt::format("{}\n{}\n{}", job.file.sha256, job.name, job.params_json))};
 }
 
 Response accept(App& app, const Request& request, NewJob job) {
@@ -122,20 +111,6 @@ Response accept(App& app, const Request& request, NewJob job) {
     return response;
 }
 
-std::int64_t number_in(const Request& request, const char* name, std::int64_t otherwise) {
-    const auto found = request.query.find(name);
-    if (found == request.query.end()) {
-        return otherwise;
-    }
-    std::int64_t number = 0;
-    const char* end = found->second.data() + found->second.size();
-    const auto parsed = std::from_chars(found->second.data(), end, number);
-    if (parsed.ec != std::errc() || parsed.ptr != end || number < 0) {
-        throw HttpProblem(400, "bad-query", fmt::format("{}: must be a whole number", name));
-    }
-    return number;
-}
-
 }  // namespace
 
 Response create_job(App& app, Request& request) {
@@ -147,9 +122,9 @@ Response create_job(App& app, Request& request) {
 
 Response list_jobs(App& app, Request& request) {
     JobQuery query;
-    constexpr std::int64_t kMost = 200;
-    query.limit =
-        static_cast<int>(std::clamp<std::int64_t>(number_in(request, "limit", 50), 1, kMost));
+    const Page page = page_in(request);
+    query.limit = page.limit;
+    query.below_ordinal = page.cursor;
     if (const auto state = request.query.find("state"); state != request.query.end()) {
         query.state = job_state_named(state->second);
         if (!query.state) {
@@ -157,16 +132,13 @@ Response list_jobs(App& app, Request& request) {
         }
     }
     query.dead_letters = request.query.count("dead_letters") != 0;
-    if (request.query.count("cursor") != 0) {
-        query.below_ordinal = number_in(request, "cursor", 0);
-    }
     json jobs = json::array();
-    const std::vector<JobRecord> page = app.store().jobs.list(query);
-    for (const JobRecord& job : page) {
+    const std::vector<JobRecord> records = app.store().jobs.list(query);
+    for (const JobRecord& job : records) {
         jobs.push_back(job_json(app, job));
     }
-    const bool full = static_cast<int>(page.size()) == query.limit;
-    const json cursor = full ? json(std::to_string(page.back().ordinal)) : json();
+    const bool full = static_cast<int>(records.size()) == query.limit;
+    const json cursor = full ? json(std::to_string(records.back().ordinal)) : json();
     return json_response({{"jobs", jobs}, {"next_cursor", cursor}});
 }
 
@@ -194,7 +166,7 @@ Response recompute_job(App& app, Request& request) {
     const auto params = body.find("params");
     NewJob job;
     job.file = old.file;
-    job.name = text_at(body, "name", old.name);
+    job.name = text_field_or(body, "name", old.name);
     job.params_json = params == body.end() ? old.params_json : dump_json(*params);
     return accept(app, request, std::move(job));
 }

@@ -2,6 +2,9 @@
 
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include <nlohmann/json_fwd.hpp>
 
 #include "server/http/request.h"
@@ -13,6 +16,16 @@ namespace leafcutter::server {
 class App;
 
 Response json_response(const nlohmann::json& value, int status = 200);
+
+// Which part of a list is wanted: ?limit= (50 unless told, 200 at most) and ?cursor=, which is the
+// `next_cursor` of the page before.
+struct Page {
+    int limit = 50;
+    std::optional<std::int64_t> cursor;
+};
+
+// Throws HttpProblem (400).
+Page page_in(const Request& request);
 
 // Of the route's {id}. Throws HttpProblem (404).
 JobRecord find_job(App& app, const Request& request);

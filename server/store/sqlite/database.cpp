@@ -65,6 +65,10 @@ std::string Database::trouble() const {
     return writer_ ? writer_->trouble() : trouble_;
 }
 
+const LatencyHistogram& Database::commit_latency() const {
+    return writer_ ? writer_->commit_latency() : no_commits_;
+}
+
 void Database::note_damage(const std::string& what) {
     if (writer_) {
         writer_->give_up(what);

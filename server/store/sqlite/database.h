@@ -40,12 +40,15 @@ public:
     void note_damage(const std::string& what);
 
     const std::filesystem::path& file() const { return file_; }
+    // Of every group's commit, sync included.
+    const LatencyHistogram& commit_latency() const;
 
 private:
     std::unique_ptr<SQLite::Database> take_reader() const;
 
     const std::filesystem::path file_;
     const std::string trouble_;  // From the start.
+    const LatencyHistogram no_commits_;
     std::unique_ptr<Writer> writer_;
     mutable std::mutex mutex_;  // Guards idle_readers_.
     mutable std::vector<std::unique_ptr<SQLite::Database>> idle_readers_;

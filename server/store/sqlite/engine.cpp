@@ -9,6 +9,7 @@
 #include "server/crash_point.h"
 #include "server/store/durable_file.h"
 #include "server/store/ids.h"
+#include "server/store/sqlite/accounts.h"
 #include "server/store/sqlite/cuts.h"
 #include "server/store/sqlite/database.h"
 #include "server/store/sqlite/devices.h"
@@ -16,10 +17,12 @@
 #include "server/store/sqlite/events.h"
 #include "server/store/sqlite/jobs.h"
 #include "server/store/sqlite/named_records.h"
+#include "server/store/sqlite/queue_ages.h"
 #include "server/store/sqlite/rescue.h"
 #include "server/store/sqlite/schema.h"
 #include "server/store/sqlite/settings.h"
 #include "server/store/sqlite/stock.h"
+#include "server/store/sqlite/webhooks.h"
 #include "server/store/store_error.h"
 
 namespace leafcutter::server {
@@ -39,7 +42,9 @@ public:
           materials_(*database_, "material"),
           presets_(*database_, "preset"),
           settings_(*database_),
-          events_(*database_) {}
+          events_(*database_),
+          accounts_(*database_),
+          webhooks_(*database_) {}
 
     JobStore& jobs() override { return jobs_; }
     CutStore& cuts() override { return cuts_; }
@@ -49,6 +54,10 @@ public:
     NamedRecords& presets() override { return presets_; }
     Settings& settings() override { return settings_; }
     EventLog& events() override { return events_; }
+    AccountStore& accounts() override { return accounts_; }
+    WebhookStore& webhooks() override { return webhooks_; }
+    QueueAges queue_ages() const override { return queue_ages_of(*database_); }
+    const LatencyHistogram& commit_latency() const override { return database_->commit_latency(); }
 
     std::string trouble() const override { return database_->trouble(); }
     std::string check() const override;
@@ -64,6 +73,8 @@ private:
     SqliteNamedRecords presets_;
     SqliteSettings settings_;
     SqliteEventLog events_;
+    SqliteAccountStore accounts_;
+    SqliteWebhookStore webhooks_;
 };
 
 std::string SqliteEngine::check() const {

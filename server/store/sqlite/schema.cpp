@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "server/crash_point.h"
+#include "server/store/sqlite/account_schema.h"
 #include "server/store/store_error.h"
 
 namespace leafcutter::server {
@@ -120,6 +121,12 @@ ALTER TABLE cut ADD COLUMN beam TEXT NOT NULL DEFAULT '';
 CREATE INDEX cut_rest ON cut(rest_of) WHERE rest_of <> '';
 CREATE INDEX cut_rest_blob ON cut(rest_sha256) WHERE rest_sha256 <> '';
 CREATE INDEX cut_intent_of ON cut_intent(cut);
+)sql", kAccountSchema,
+    R"sql(
+-- How far each webhook has been told of the events.
+CREATE TABLE webhook(
+    url TEXT PRIMARY KEY,
+    told_seq INTEGER NOT NULL) WITHOUT ROWID;
 )sql",
     R"sql(
 -- The queue has an order of its own: priority, then place.

@@ -1,5 +1,6 @@
 #include "server/store/sqlite/writer.h"
 
+#include <chrono>
 #include <sqlite3.h>
 #include <utility>
 
@@ -97,7 +98,9 @@ void Writer::loop(const std::stop_token& stop) {
             }
             group.swap(waiting_);
         }
+        const auto begin = std::chrono::steady_clock::now();
         commit_group(group);
+        commit_latency_.add(std::chrono::steady_clock::now() - begin);
         {
             const std::scoped_lock lock(mutex_);
             for (Request* request : group) {

@@ -15,6 +15,8 @@
 #include <thread>
 #include <vector>
 
+#include "server/latency_histogram.h"
+
 namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
 class Database;
 }
@@ -38,6 +40,9 @@ public:
     std::string trouble() const;
     void give_up(const std::string& what);
 
+    // Of every group's commit, sync included.
+    const LatencyHistogram& commit_latency() const { return commit_latency_; }
+
 private:
     struct Request;
 
@@ -50,6 +55,7 @@ private:
     std::unique_ptr<SQLite::Database> database_;  // Of the thread alone, once it runs.
     std::function<void()> after_commit_;
     int groups_since_checkpoint_ = 0;
+    LatencyHistogram commit_latency_;
 
     mutable std::mutex mutex_;  // Guards the members below.
     std::condition_variable_any arrived_;

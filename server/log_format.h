@@ -1,0 +1,12 @@
+// How the daemon's log lines look, on standard error.
+
+#pragma once
+
+namespace leafcutter::server {
+
+enum class LogFormat { Text, Json };
+
+// Replaces the default logger. Json: one object a line, with time, level and message.
+void begin_log(LogFormat format);
+
+}  // namespace leafcutter::server
