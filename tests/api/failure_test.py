@@ -108,7 +108,10 @@ class FailureTest(unittest.TestCase):
             for _ in range(chance.choice((1, 20, 400))):
                 data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
             base.write_bytes(data)
-            self.assertTrue(self.world.start(), f"flips {number}")
+            if not self.world.start():
+                # Without a backup, and with accounts that can't be read, nobody may be let in.
+                self.assertEqual(number % 2, 1, f"flips {number}")
+                continue
             ready = self.world.ask("GET", "/readyz")[1]
             status, shown = self.world.ask("GET", "/jobs/" + job["id"])
             self.assertIn(status, (200, 404, 500, 503))
