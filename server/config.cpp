@@ -30,11 +30,10 @@ T value_of(const toml::node& node, const std::string& key, const char* kind) {
     return *value;
 }
 
-unsigned count_of(const toml::node& node, const std::string& key) {
+unsigned count_of(const toml::node& node, const std::string& key, std::int64_t most) {
     const auto value = value_of<std::int64_t>(node, key, "a whole number");
-    constexpr std::int64_t kMost = 256;
-    if (value < 1 || value > kMost) {
-        fail(node.source(), key + ": must be 1 to 256");
+    if (value < 1 || value > most) {
+        fail(node.source(), fmt::format("{}: must be 1 to {}", key, most));
     }
     return static_cast<unsigned>(value);
 }
@@ -160,13 +159,19 @@ LogFormat log_format_of(const toml::node& node) {
 }
 
 bool read_count(std::string_view key, const toml::node& node, Config& config) {
-    const std::pair<std::string_view, unsigned*> counts[] = {
-        {"http_workers", &config.http_workers},
-        {"compute_workers", &config.compute_workers},
-        {"threads_per_job", &config.threads_per_job}};
-    for (const auto& [name, count] : counts) {
+    struct Count {
+        std::string_view name;
+        unsigned* count;
+        std::int64_t most;
+    };
+    const Count counts[] = {{"http_workers", &config.http_workers, 256},
+                            {"compute_workers", &config.compute_workers, 256},
+                            {"threads_per_job", &config.threads_per_job, 256},
+                            {"job_memory_mb", &config.job_memory_mb, 1 << 24},
+                            {"job_minutes", &config.job_minutes, 60 * 24 * 30}};
+    for (const auto& [name, count, most] : counts) {
         if (key == name) {
-            *count = count_of(node, std::string(name));
+            *count = count_of(node, std::string(name), most);
             return true;
         }
     }

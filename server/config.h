@@ -34,6 +34,8 @@ struct Config {
     unsigned http_workers = 8;
     unsigned compute_workers = 1;
     unsigned threads_per_job = 0;  // 0: as many as the machine has.
+    unsigned job_memory_mb = 0;  // Of one computation; 0: three quarters of the machine's, shared.
+    unsigned job_minutes = 60;   // Likewise its time.
     StopPolicy stop_policy = StopPolicy::Pause;
     LogFormat log_format = LogFormat::Text;
     std::vector<DeviceRecord> devices;

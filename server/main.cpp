@@ -18,9 +18,12 @@ int run(int argc, char** argv) {
     add_inspect_command(app, common);
     add_sample_command(app, common);
     add_weave_command(app, common);
+    add_compute_command(app, common);
     add_serve_command(app, common);
     add_user_command(app, common);
     add_submit_command(app, common);
+    add_jobs_command(app, common);
+    add_cuts_command(app, common);
     add_send_command(app, common);
     add_simulate_command(app, common);
     add_devices_command(app, common);

@@ -1,12 +1,15 @@
 // `leafcutter devices`: serial ports and USB engravers found on this host.
 
 #include <cstdio>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "drivers/port_discovery.h"
+#include "server/cli/api_client.h"
 #include "server/cli/command.h"
 
 namespace leafcutter::server {
@@ -15,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void print_json(const std::vector<drivers::FoundPort>& ports) {
+void print_ports_json(const std::vector<drivers::FoundPort>& ports) {
     Json list = Json::array();
     for (const drivers::FoundPort& port : ports) {
         list.push_back({{"uri", port.uri},
@@ -47,14 +50,36 @@ void print_text(const std::vector<drivers::FoundPort>& ports) {
     }
 }
 
+void print_machines(const nlohmann::json& answer, const CommonOptions& common) {
+    if (common.json) {
+        print_json(answer);
+        return;
+    }
+    for (const nlohmann::json& device : answer.at("devices")) {
+        const nlohmann::json& cut = device.at("cut");
+        std::printf("%-16s %-14s %-28s %s\n", device.at("id").get<std::string>().c_str(),
+                    device.at("status").at("state").get<std::string>().c_str(),
+                    cut.is_string() ? cut.get<std::string>().c_str() : "-",
+                    device.at("uri").get<std::string>().c_str());
+    }
+}
+
 }  // namespace
 
 void add_devices_command(CLI::App& app, const CommonOptions& common) {
     CLI::App* command =
         app.add_subcommand("devices", "Serial ports and USB engravers found on this host");
-    command->callback([&common] {
+    const auto api = std::make_shared<ApiOptions>();  // Shared with the callback.
+    const auto of_daemon = std::make_shared<bool>(false);
+    add_api_options(*command, *api);
+    command->add_flag("--daemon", *of_daemon, "The daemon's machines and their state instead");
+    command->callback([&common, api, of_daemon] {
+        if (*of_daemon) {
+            print_machines(ApiClient(*api).get("/devices"), common);
+            return;
+        }
         const std::vector<drivers::FoundPort> ports = drivers::find_ports();
-        common.json ? print_json(ports) : print_text(ports);
+        common.json ? print_ports_json(ports) : print_text(ports);
     });
 }
 

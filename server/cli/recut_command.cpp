@@ -21,9 +21,9 @@
 #include "server/cli/package_dir.h"
 #include "server/json_reader.h"
 #include "server/material_json.h"
+#include "server/outline_json.h"
 #include "server/params.h"
 #include "server/recut.h"
-#include "server/outline_json.h"
 #include "server/recut_wishes.h"
 #include "server/zip_reader.h"
 

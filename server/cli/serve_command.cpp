@@ -1,11 +1,14 @@
 // leafcutter serve: the daemon.
 
+#include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <unistd.h>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -17,6 +20,7 @@
 #include "server/cli/interrupt.h"
 #include "server/cli/service_notice.h"
 #include "server/log_format.h"
+#include "server/queue/compute_child.h"
 #include "server/recut_compute.h"
 #include "server/weave_compute.h"
 
@@ -63,13 +67,25 @@ std::unique_ptr<App> started(const Config& config, AppParts parts) {
     }
 }
 
+ComputeBudget budget_of(const Config& config) {
+    ComputeBudget budget;
+    budget.memory_bytes = std::uint64_t{config.job_memory_mb} << 20U;
+    if (budget.memory_bytes == 0) {
+        const auto pages = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES));
+        const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+        budget.memory_bytes = pages * page / 4 * 3 / std::max(1U, config.compute_workers);
+    }
+    budget.time = std::chrono::minutes(config.job_minutes);
+    return budget;
+}
+
 void serve(const ServeOptions& options) {
     std::signal(SIGPIPE, SIG_IGN);
     const InterruptWatch interrupt;
     const Config config = wanted_config(options);
     begin_log(config.log_format);
     AppParts parts;
-    parts.compute = weave_job;
+    parts.compute = compute_in_child(budget_of(config));
     parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
     parts.check_params = check_job_params;
     parts.recut = recut_job_pieces;

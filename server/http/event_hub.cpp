@@ -168,12 +168,19 @@ void EventHub::greet(Client& client) {
     constexpr std::int64_t kLongestReplay = 10000;
     const std::optional<std::int64_t> seen = client.subscription.last_seen;
     append(client, "retry: 2000\n\n");
-    if (!seen || *seen > told_ || told_ - *seen > kLongestReplay) {
+    std::vector<StoredEvent> missed;
+    if (seen && *seen <= told_ && told_ - *seen <= kLongestReplay) {
+        missed = source_.stored_after(*seen, static_cast<int>(told_ - *seen));
+    }
+    // Old events are let go from the front of the log: who missed any of those starts anew.
+    const bool whole =
+        seen && (*seen == told_ || (!missed.empty() && missed.front().seq == *seen + 1));
+    if (!whole) {
         append(client, fmt::format("id: {}\nevent: snapshot\ndata: {}\n\n", told_,
                                    source_.snapshot(told_, client.subscription.job)));
         return;
     }
-    for (const StoredEvent& event : source_.stored_after(*seen, static_cast<int>(told_ - *seen))) {
+    for (const StoredEvent& event : missed) {
         if (event.seq <= told_ && wants(client.subscription, event.job)) {
             append(client, frame(event));
         }

@@ -6,11 +6,14 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "geometry/error.h"
+#include "server/crash_point.h"
 #include "server/stock_choice.h"
+#include "server/store/store_error.h"
 
 namespace leafcutter::server {
 
@@ -81,6 +84,13 @@ ComputedJob stored_result(const Blobs& blobs, const ComputeOutput& output) {
 }
 
 JobFailure failure_of(const std::exception& error) {
+    if (const auto* failed = dynamic_cast<const ComputeFailed*>(&error)) {
+        return failed->failure();
+    }
+    if (dynamic_cast<const BlobWriteFailed*>(&error) != nullptr) {
+        return {"internal", "disk",
+                fmt::format("its package could not be stored: {}", error.what())};
+    }
     if (const auto* refused = dynamic_cast<const geometry::Error*>(&error)) {
         return {std::string(name_of(refused->kind())), refused->code(), refused->what()};
     }
@@ -163,10 +173,35 @@ bool ComputeRunner::compute_next(const std::stop_token& stop) {
         const std::scoped_lock lock(mutex_);
         running_[job->id].progress = {"read", 0.0};
     }
-    compute(*job, stop);
-    const std::scoped_lock lock(mutex_);
-    running_.erase(job->id);
+    bool settled = true;
+    try {
+        compute(*job, stop);
+    } catch (const StoreError& error) {
+        spdlog::error("job {}: {}", job->id, error.what());
+        settled = false;
+    }
+    {
+        const std::scoped_lock lock(mutex_);
+        running_.erase(job->id);
+    }
+    if (!settled) {
+        give_back(*job, stop);
+    }
     return true;
+}
+
+// The store took neither result nor failure: back to the queue as soon as it takes anything.
+void ComputeRunner::give_back(const JobRecord& job, const std::stop_token& stop) {
+    constexpr std::chrono::seconds kPause{1};
+    while (!stop.stop_requested()) {
+        try {
+            store_.jobs.requeue(job.id);
+            return;
+        } catch (const StoreError&) {
+            std::unique_lock lock(mutex_);
+            arrived_.wait_for(lock, stop, kPause, [] { return false; });
+        }
+    }
 }
 
 void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
@@ -196,6 +231,11 @@ void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
     } catch (const geometry::Cancelled&) {
         const bool requeued = stop.stop_requested() && store_.jobs.requeue(job.id);
         spdlog::info("job {}: {}", job.id, requeued ? "back in the queue" : "cancelled");
+    } catch (const ComputeCrashed& error) {
+        spdlog::warn("job {}: {}", job.id, error.what());
+        store_.jobs.crashed(job.id, error.what());
+    } catch (const StoreError&) {
+        throw;  // No fault of the job's: it is still there when the store is back.
     } catch (const std::exception& error) {
         spdlog::info("job {}: failed: {}", job.id, error.what());
         store_.jobs.fail(job.id, failure_of(error));
@@ -212,6 +252,7 @@ std::string ComputeRunner::params_of(const JobRecord& job) const {
 }
 
 void ComputeRunner::finish(const JobRecord& job, const ComputeOutput& output) {
+    crash_point("compute.before-result");
     const bool kept = store_.jobs.finish(job.id, stored_result(store_.blobs, output));
     spdlog::info("job {}: {}", job.id, kept ? "ready" : "cancelled at the last moment");
 }

@@ -11,9 +11,11 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "fab/package/package.h"
@@ -48,6 +50,24 @@ struct ComputeOutput {
 
 // What turns a mesh into a package; throws geometry::Error, geometry::Cancelled.
 using Compute = std::function<ComputeOutput(const ComputeInput&, const geometry::Context&)>;
+
+// What a computation elsewhere said of its failure.
+class ComputeFailed : public std::runtime_error {
+public:
+    explicit ComputeFailed(JobFailure failure)
+        : std::runtime_error(failure.detail), failure_(std::move(failure)) {}
+
+    const JobFailure& failure() const { return failure_; }
+
+private:
+    JobFailure failure_;
+};
+
+// It ended without a word: it may do better another time, or never.
+class ComputeCrashed : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
 
 struct ComputeOptions {
     unsigned workers = 1;          // Jobs at the same time.
@@ -92,6 +112,7 @@ private:
     bool compute_next(const std::stop_token& stop);
     void compute(const JobRecord& job, const std::stop_token& stop);
     std::string params_of(const JobRecord& job) const;
+    void give_back(const JobRecord& job, const std::stop_token& stop);
     void finish(const JobRecord& job, const ComputeOutput& output);
     void note_progress(const std::string& id, std::string_view stage, double fraction);
 

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "server/latency_histogram.h"
@@ -54,5 +56,15 @@ public:
     // Throws StoreError.
     virtual void back_up_to(const std::filesystem::path& file) const = 0;
 };
+
+struct OpenedEngine {
+    std::unique_ptr<Engine> engine;
+    std::string notice;     // What was done to make it usable, for people; empty: nothing.
+    bool restored = false;  // It is what a backup holds: older than what happened since.
+};
+
+// The engine of a state folder, opened or created. `after_commit` is called by a thread of the
+// engine and must not wait. Throws DatabaseUnusable.
+OpenedEngine open_engine(const std::filesystem::path& folder, std::function<void()> after_commit);
 
 }  // namespace leafcutter::server

@@ -10,6 +10,10 @@
 
 namespace leafcutter::server {
 
+OpenedEngine open_engine(const std::filesystem::path& folder, std::function<void()> after_commit) {
+    return open_sqlite(folder, folder / "backups", std::move(after_commit));
+}
+
 Store::Store(const std::filesystem::path& path, std::function<void()> after_commit)
     : folder(path),
       engine_(open_engine(std::move(after_commit))),
@@ -35,7 +39,7 @@ Store::Store(const std::filesystem::path& path, std::function<void()> after_comm
 }
 
 std::unique_ptr<Engine> Store::open_engine(std::function<void()> after_commit) {
-    OpenedEngine opened = open_sqlite(folder.path(), backups(), std::move(after_commit));
+    OpenedEngine opened = server::open_engine(folder.path(), std::move(after_commit));
     notice_ = std::move(opened.notice);
     restored_ = opened.restored;
     return std::move(opened.engine);

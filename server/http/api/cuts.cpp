@@ -1,6 +1,9 @@
 // Cuts. Nothing here fires a laser but start and confirm-sheet, which name the exact program.
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,6 +15,7 @@
 #include "server/http/guard.h"
 #include "server/http/json_body.h"
 #include "server/http/problem.h"
+#include "server/queue/spread.h"
 
 namespace leafcutter::server {
 
@@ -153,27 +157,118 @@ Response tell_runner(App& app, const Request& request, const std::string& action
     return json_response(cut_json(app, cut), 202);
 }
 
+using Runners = std::vector<std::shared_ptr<DeviceRunner>>;
+
+Runners one_runner(App& app, const json& body) {
+    const auto device = body.find("device");
+    if (device == body.end() || !device->is_string()) {
+        throw HttpProblem(422, "bad-field", "device: name the machine");
+    }
+    auto runner = app.fleet().find(device->get<std::string>());
+    if (!runner) {
+        throw HttpProblem(422, "no-such-device", "device: there is no machine of that id");
+    }
+    return {std::move(runner)};
+}
+
+// "auto": every machine that is connected.
+Runners runners_in(App& app, const json& wanted) {
+    Runners runners;
+    if (wanted == "auto") {
+        for (auto& runner : app.fleet().all()) {
+            if (runner->status().state != drivers::MachineState::Disconnected) {
+                runners.push_back(runner);
+            }
+        }
+        if (runners.empty()) {
+            throw HttpProblem(409, "device-not-ready", "no machine is connected");
+        }
+        return runners;
+    }
+    if (!wanted.is_array() || wanted.empty()) {
+        throw HttpProblem(422, "bad-field", "devices: must be a list of machines, or \"auto\"");
+    }
+    for (const json& id : wanted) {
+        auto runner = id.is_string() ? app.fleet().find(id.get<std::string>()) : nullptr;
+        if (!runner || std::find(runners.begin(), runners.end(), runner) != runners.end()) {
+            throw HttpProblem(
+                422, "no-such-device",
+                fmt::format("devices: there is no machine {}, or it is there twice", id.dump()));
+        }
+        runners.push_back(std::move(runner));
+    }
+    return runners;
+}
+
+std::vector<CutPlace> places_of(App& app, const Runners& runners) {
+    std::vector<CutPlace> places;
+    for (const auto& runner : runners) {
+        CutPlace place{runner->record().id, runner->record().bed_mm};
+        for (const CutRecord& cut : app.store().cuts.open_on(place.device)) {
+            const auto job = app.store().jobs.find(cut.job);
+            for (std::size_t i = cut.position; job && i < cut.sheets.size(); ++i) {
+                for (const SheetRecord& sheet : job->sheets) {
+                    place.busy_s += sheet.number == cut.sheets[i] ? sheet.estimated_s : 0.0;
+                }
+            }
+        }
+        places.push_back(std::move(place));
+    }
+    return places;
+}
+
+// Those that are named, or those not cut yet, or all if every one is.
+std::vector<SheetRecord> wanted_sheets(const JobRecord& job, const std::vector<int>& named) {
+    std::vector<SheetRecord> wanted;
+    for (const int number : named) {
+        const auto found =
+            std::find_if(job.sheets.begin(), job.sheets.end(),
+                         [number](const SheetRecord& sheet) { return sheet.number == number; });
+        if (found == job.sheets.end()) {
+            throw NotCuttable(fmt::format("the job has no sheet {}", number));
+        }
+        wanted.push_back(*found);
+    }
+    for (const bool uncut_only : {true, false}) {
+        if (!wanted.empty()) {
+            return wanted;
+        }
+        std::copy_if(job.sheets.begin(), job.sheets.end(), std::back_inserter(wanted),
+                     [uncut_only](const SheetRecord& sheet) {
+                         return !sheet.program_sha256.empty() && !(uncut_only && sheet.cut);
+                     });
+    }
+    if (!wanted.empty()) {
+        return wanted;
+    }
+    throw NotCuttable("the job has no sheets");
+}
+
 }  // namespace
 
 Response create_cut(App& app, Request& request) {
     const JobRecord job = find_job(app, request);
     const json body = read_json_object(request);
-    const auto device = body.find("device");
-    if (device == body.end() || !device->is_string()) {
-        throw HttpProblem(422, "bad-field", "device: name the machine");
+    const bool spread = body.count("devices") != 0;
+    const auto runners = spread ? runners_in(app, body.at("devices")) : one_runner(app, body);
+    for (const auto& runner : runners) {
+        if (runner->record().auto_start) {
+            admit(request, Role::Operator, Beam::MayFire);
+        }
     }
-    const auto runner = app.fleet().find(device->get<std::string>());
-    if (!runner) {
-        throw HttpProblem(422, "no-such-device", "device: there is no machine of that id");
+    const std::vector<CutWish> wishes =
+        spread ? spread_sheets(wanted_sheets(job, sheets_in(body)), places_of(app, runners))
+               : std::vector<CutWish>{{runners.front()->record().id, sheets_in(body)}};
+    const std::vector<CutRecord> cuts = app.store().cuts.add(job.id, wishes);
+    for (const auto& runner : runners) {
+        runner->wake();
     }
-    if (runner->record().auto_start) {
-        admit(request, Role::Operator, Beam::MayFire);
+    json made = json::array();
+    for (const CutRecord& cut : cuts) {
+        made.push_back(cut_json(app, cut));
     }
-    const CutRecord cut =
-        app.store().cuts.add(job.id, {{runner->record().id, sheets_in(body)}}).front();
-    runner->wake();
-    Response response = json_response(cut_json(app, cut), 201);
-    response.headers["Location"] = "/api/v1/cuts/" + cut.id;
+    Response response = json_response(spread ? json{{"cuts", made}} : made.front(), 201);
+    response.headers["Location"] = "/api/v1/cuts/" + cuts.front().id;
     return response;
 }
 

@@ -11,12 +11,6 @@
 
 namespace leafcutter::server {
 
-struct OpenedEngine {
-    std::unique_ptr<Engine> engine;
-    std::string notice;     // What was done to make it usable, for people; empty: nothing.
-    bool restored = false;  // It is what a backup holds: older than what happened since.
-};
-
 // Opens or creates `folder`/leafcutter.db, migrated; damaged ones are put aside for a backup of
 // `backups`, or opened for reading alone. `after_commit` is called by a thread of the engine and
 // must not wait. Throws DatabaseUnusable.

@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""The store's rows of the failure matrix: disk full, foreign locks, damage, jumping clocks, two
+daemons, uploads that break off, and jobs that break their process.
+Usage: failure_test.py LEAFCUTTER"""
+import hashlib
+import json
+import os
+import random
+import shutil
+import socket
+import sqlite3
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import daemon
+from crash_test import World
+from cuts_test import PARAMS, PLATE
+from daemon import Daemon, free_port
+
+SHA = hashlib.sha256(PLATE).hexdigest()
+FLIPS = int(os.environ.get("LEAFCUTTER_FLIPS", "8"))
+
+
+class FailureTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.world = World(self.folder.name)
+
+    def tearDown(self):
+        self.world.end()
+        self.folder.cleanup()
+
+    def submit(self, name="plate", expected=201, params=None):
+        self.world.ask("PUT", f"/blobs/{SHA}", PLATE)
+        status, job = self.world.ask("POST", "/jobs", {"blob": SHA, "file_name": "plate.off", "name": name,
+                                                    "params": params or PARAMS})
+        self.assertEqual(status, expected, job)
+        return job
+
+    def ended(self, job):
+        return self.world.wait(f"/jobs/{job['id']}", lambda job: job["state"] not in ("queued", "computing"))
+
+    def test_a_full_disk_is_said_before_anything_is_taken_and_passes(self):
+        state = self.world.state
+        state.mkdir()
+        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16m", "tmpfs", str(state)],
+                                               stderr=subprocess.DEVNULL).returncode:
+            self.skipTest("needs the right to mount")
+        try:
+            self.assertTrue(self.world.start())
+            first = self.ended(self.submit("first"))
+            filler = state / "filler"
+            with filler.open("wb") as out:
+                try:
+                    while True:
+                        out.write(bytes(65536))
+                        out.flush()
+                except OSError:
+                    pass
+            other = PLATE + b"\n"
+            status, answer = self.world.ask("PUT", "/blobs/" + hashlib.sha256(other).hexdigest(), other)
+            self.assertEqual((status, answer["code"]), (507, "disk"))
+            status, answer = self.world.ask("GET", "/readyz")
+            self.assertEqual((status, answer["disk"]), (503, False))
+            self.assertEqual(self.world.ask("GET", "/jobs/" + first["id"])[0], 200)
+            # Small changes go on in the room that is reserved, or are refused; nothing breaks.
+            for number in range(200):
+                status, answer = self.world.ask("POST", "/queue/pause", {"reason": "x" * 900})
+                self.assertIn(status, (200, 507), answer)
+            filler.unlink()
+            self.assertEqual(self.world.ask("POST", "/queue/resume", {})[0], 200)
+            self.assertEqual(self.ended(self.submit("second"))["state"], "ready")
+        finally:
+            self.world.end()
+            self.world.daemon = None
+            subprocess.run(["umount", str(state)], check=True)
+
+    def test_a_foreign_lock_is_busy_and_passes(self):
+        self.assertTrue(self.world.start())
+        self.submit("before")
+        foreign = sqlite3.connect(self.world.state / "leafcutter.db", isolation_level=None)
+        foreign.execute("BEGIN IMMEDIATE")
+        status, answer = self.world.ask("POST", "/queue/pause", {"reason": "locked"})
+        self.assertEqual((status, answer["code"]), (503, "store-busy"))
+        self.assertEqual(self.world.ask("GET", "/jobs")[0], 200)
+        foreign.execute("ROLLBACK")
+        foreign.close()
+        self.assertEqual(self.world.ask("POST", "/queue/pause", {"reason": "free"})[0], 200)
+
+    def test_any_damage_is_rescued_or_shown_and_never_crashes(self):
+        self.assertTrue(self.world.start())
+        job = self.ended(self.submit("kept"))
+        self.assertEqual(self.world.ask("POST", "/backups", {})[0], 201)
+        self.world.daemon.stop()
+        whole = Path(self.folder.name) / "whole"
+        shutil.copytree(self.world.state, whole)
+        chance = random.Random(1)
+        for number in range(FLIPS):
+            shutil.rmtree(self.world.state)
+            shutil.copytree(whole, self.world.state)
+            if number % 2:
+                shutil.rmtree(self.world.state / "backups")
+            base = self.world.state / "leafcutter.db"
+            data = bytearray(base.read_bytes())
+            for _ in range(chance.choice((1, 20, 400))):
+                data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
+            base.write_bytes(data)
+            if not self.world.start():
+                # Without a backup, and with accounts that can't be read, nobody may be let in.
+                self.assertEqual(number % 2, 1, f"flips {number}")
+                continue
+            ready = self.world.ask("GET", "/readyz")[1]
+            status, shown = self.world.ask("GET", "/jobs/" + job["id"])
+            self.assertIn(status, (200, 404, 500, 503))
+            if number % 2 == 0:
+                self.assertFalse(ready["read_only"], ready)
+            if ready["read_only"]:
+                self.assertNotEqual(ready["trouble"], "")
+                self.assertEqual(self.world.ask("POST", "/queue/pause", {})[0], 503)
+            self.world.daemon.kill()
+        self.world.daemon = None
+
+    def test_two_daemons_on_one_folder_or_port(self):
+        self.assertTrue(self.world.start())
+        for state, port in ((self.world.state, free_port()),
+                            (Path(self.folder.name) / "other", self.world.port)):
+            begun = time.monotonic()
+            second = subprocess.run(
+                [daemon.BINARY, "serve", "--state", str(state), "--listen", f"127.0.0.1:{port}"],
+                capture_output=True, text=True, timeout=20)
+            self.assertNotEqual(second.returncode, 0)
+            self.assertLess(time.monotonic() - begun, 15)
+            self.assertNotEqual(second.stderr.strip(), "")
+        self.assertEqual(self.world.ask("GET", "/healthz")[0], 200)
+
+    def test_an_upload_that_breaks_off_leaves_nothing(self):
+        self.assertTrue(self.world.start())
+        body = bytes(300000)
+        sha = hashlib.sha256(body).hexdigest()
+        for sent in (0, 1, 65536, 131072, 299999):
+            with socket.create_connection(("127.0.0.1", self.world.port)) as link:
+                link.sendall(f"PUT /api/v1/blobs/{sha} HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+                             f"Content-Length: {len(body)}\r\n\r\n".encode() + body[:sent])
+        incoming = self.world.state / "blobs/incoming"
+        deadline = time.monotonic() + 20
+        while list(incoming.iterdir()) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        self.assertEqual(list(incoming.iterdir()), [])
+        self.assertEqual(self.world.ask("PUT", f"/blobs/{sha}", body)[0], 201)
+        self.assertEqual(self.world.ask("GET", "/jobs")[1]["jobs"], [])
+
+    def test_a_job_that_breaks_its_process_ends_as_a_dead_letter(self):
+        self.assertTrue(self.world.start("compute.child:1"))  # In every child.
+        job = self.submit("poison")
+        dead = self.ended(job)
+        self.assertEqual((dead["state"], dead["error"]["code"], dead["attempt"]), ("failed", "poison-job", 3))
+        listed = self.world.ask("GET", "/jobs?dead_letters=true")[1]["jobs"]
+        self.assertEqual([each["id"] for each in listed], [job["id"]])
+        self.assertEqual(self.world.ask("GET", "/queue")[1]["dead_letters"], 1)
+        self.world.daemon.kill()
+        self.assertTrue(self.world.start())  # Whatever it was is mended.
+        status, _ = self.world.ask("POST", f"/jobs/{job['id']}/retry", {"cause": "mended"})
+        self.assertEqual(status, 202)
+        self.assertEqual(self.ended(job)["state"], "ready")
+
+    def test_a_job_beyond_its_memory_fails_alone(self):
+        config = Path(self.folder.name) / "small.toml"
+        config.write_text("job_memory_mb = 100\ncompute_workers = 1\nthreads_per_job = 1\n")
+        self.world.daemon = Daemon(self.world.state, self.world.port, "--config", str(config))
+        failed = self.ended(self.submit("large"))
+        self.assertEqual((failed["error"]["kind"], failed["error"]["code"]), ("budget", "memory-budget"))
+        self.assertEqual(self.world.ask("GET", "/healthz")[0], 200)
+
+    def test_clocks_that_jump_disturb_nothing(self):
+        library = next(Path("/usr/lib").glob("*/faketime/libfaketimeMT.so.1"), None)
+        if library is None:
+            self.skipTest("needs libfaketime")
+        clock = Path(self.folder.name) / "clock"
+        clock.write_text("+0")
+        os.environ.update(LD_PRELOAD=str(library), FAKETIME_TIMESTAMP_FILE=str(clock),
+                          FAKETIME_NO_CACHE="1", FAKETIME_DONT_FAKE_MONOTONIC="1")
+        try:
+            self.assertTrue(self.world.start())
+        finally:
+            for name in ("LD_PRELOAD", "FAKETIME_TIMESTAMP_FILE", "FAKETIME_NO_CACHE",
+                         "FAKETIME_DONT_FAKE_MONOTONIC"):
+                del os.environ[name]
+        for jump in ("+365d", "-365d", "+1h"):
+            clock.write_text(jump)
+            self.assertEqual(self.ended(self.submit("at " + jump))["state"], "ready")
+        names = [job["name"] for job in self.world.ask("GET", "/jobs")[1]["jobs"]]
+        self.assertEqual(names, ["at +1h", "at -365d", "at +365d"])  # Order is that of events.
+
+
+if __name__ == "__main__":
+    unittest.main()

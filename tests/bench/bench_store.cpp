@@ -1,0 +1,85 @@
+// The store with as many jobs as a busy workshop has in years: how long it takes to open, to claim
+// and to list. Usage: bench_store [JOBS] [QUEUED]
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "server/store/store.h"
+#include "tests/support/temp_dir.h"
+
+namespace {
+
+using namespace leafcutter::server;
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point begun) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
+}
+
+// Median and worst of some calls.
+template <typename Call>
+void time_of(const char* what, int times, Call call) {
+    std::vector<double> taken;
+    for (int i = 0; i < times; ++i) {
+        const Clock::time_point begun = Clock::now();
+        call();
+        taken.push_back(ms_since(begun));
+    }
+    std::sort(taken.begin(), taken.end());
+    fmt::print("{:28} {:9.2f} ms median {:9.2f} ms worst of {}\n", what, taken[taken.size() / 2],
+               taken.back(), times);
+}
+
+ComputedJob package() {
+    ComputedJob result;
+    result.summary_json = R"({"quads":100,"strips":20,"pieces":20,"sheets":1})";
+    for (int i = 0; i < 20; ++i) {
+        result.artifacts.push_back({fmt::format("sheets/part-{}.svg", i), 1000,
+                                    sha256_of(std::to_string(i)), "image/svg+xml"});
+    }
+    SheetRecord sheet;
+    sheet.program_sha256 = sha256_of("program");
+    result.sheets.push_back(sheet);
+    return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const int jobs = argc > 1 ? std::atoi(argv[1]) : 100000;
+    const int queued = argc > 2 ? std::atoi(argv[2]) : 10000;
+    const leafcutter::test::TempDir folder;
+    {
+        Store store(folder.path(), [] {});
+        const Clock::time_point begun = Clock::now();
+        const ComputedJob result = package();
+        for (int i = 0; i < jobs; ++i) {
+            const NewJob job{fmt::format("job {}", i), {"a.obj", 3, sha256_of("abc")}, "{}"};
+            if (i < jobs - queued) {
+                store.jobs.add_ready(job, "", result);
+            } else {
+                store.jobs.add(job, std::nullopt);
+            }
+        }
+        fmt::print("{} jobs, {} of them queued: filled in {:.0f} s\n", jobs, queued,
+                   ms_since(begun) / 1000.0);
+    }
+    time_of("open", 3, [&folder] { const Store store(folder.path(), [] {}); });
+    Store store(folder.path(), [] {});
+    time_of("claim", 200, [&store] { store.jobs.claim(); });
+    JobQuery page;
+    time_of("list 50", 50, [&store, &page] { store.jobs.list(page); });
+    page.limit = 200;
+    time_of("list 200", 50, [&store, &page] { store.jobs.list(page); });
+    page.state = JobState::Ready;
+    time_of("list 200 ready", 50, [&store, &page] { store.jobs.list(page); });
+    time_of("queue 500", 50, [&store] { store.jobs.queue(500); });
+    time_of("queue counts", 50, [&store] { store.jobs.queue_counts(); });
+    time_of("backup", 1, [&store] { store.back_up(1); });
+    time_of("check", 1, [&store] { store.check(); });
+    return 0;
+}
