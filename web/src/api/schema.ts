@@ -255,6 +255,7 @@ export type StockEntry = {
 export type Stock = {
   readonly format?: "leafcutter-stock/1";
   readonly stock: readonly (StockEntry)[];
+  readonly next_cursor?: string | null;
 };
 
 export type Preset = {
@@ -267,6 +268,7 @@ export type Preset = {
 
 export type Presets = {
   readonly presets: readonly (Preset)[];
+  readonly next_cursor?: string | null;
 };
 
 export type Retention = {
@@ -313,6 +315,12 @@ export type AuditEntry = {
   readonly action: string;
   readonly note: string;
   readonly status: number;
+};
+
+export type MachineSetting = {
+  readonly key: string;
+  readonly value: number;
+  readonly name: string;
 };
 
 export type Call =
@@ -383,4 +391,5 @@ export type Call =
   | "GET /keys"
   | "POST /keys"
   | "DELETE /keys/{id}"
-  | "GET /audit";
+  | "GET /audit"
+  | "GET /devices/{id}/settings";
