@@ -168,7 +168,7 @@ class FailureTest(unittest.TestCase):
 
     def test_a_job_beyond_its_memory_fails_alone(self):
         config = Path(self.folder.name) / "small.toml"
-        config.write_text("job_memory_mb = 100\ncompute_workers = 1\nthreads_per_job = 1\n")
+        config.write_text("job_memory_mb = 70\ncompute_workers = 1\nthreads_per_job = 1\n")
         self.world.daemon = Daemon(self.world.state, self.world.port, "--config", str(config))
         failed = self.ended(self.submit("large"))
         self.assertEqual((failed["error"]["kind"], failed["error"]["code"]), ("budget", "memory-budget"))
