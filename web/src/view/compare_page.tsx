@@ -122,8 +122,8 @@ export function ComparePage(props: { readonly id: string; readonly other: string
         fault === '' && <p class="quiet empty">{t.files.loading}</p>
       ) : (
         <div class="result">
-          {sides.map(({ job, content }) => (
-            <ModelPanel key={job.id} name={job.name} title={job.name} content={content} />
+          {sides.map(({ job, content }, index) => (
+            <ModelPanel key={job.id} name={job.name} title={`${index + 1} · ${job.name}`} content={content} />
           ))}
           <Figures a={sides[0]} b={sides[1]} />
           <Parameters a={sides[0].job} b={sides[1].job} />
