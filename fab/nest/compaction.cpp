@@ -15,8 +15,7 @@ namespace leafcutter::fab {
 namespace {
 
 constexpr std::int64_t kEpoch = 20'000;  // Evaluations of each search between two exchanges.
-constexpr std::size_t kSearches = 2;
-constexpr double kSharedFrom = 0.5;  // From then on all go on from the best of all.
+constexpr double kSharedFrom = 0.5;      // From then on all go on from the best of all.
 
 // The narrowest box any part can have.
 double narrowest(const BoardPlan& plan) {
@@ -172,7 +171,7 @@ Packing compact(const BoardPlan& plan,
                 const geometry::Context& context,
                 const std::function<bool(const Packing&)>& accept) {
     std::vector<std::unique_ptr<Explorer>> searches;
-    for (std::size_t i = 0; i < kSearches; ++i) {
+    for (std::size_t i = 0; i < options.searches; ++i) {
         searches.push_back(std::make_unique<Explorer>(plan, start, options.seed * 7919 + i));
     }
     Packing best = std::move(start);
@@ -191,7 +190,8 @@ Packing compact(const BoardPlan& plan,
         }
         try {
             context.report("nest", progress);
-            const std::int64_t left = (options.max_evaluations - spent) / 2 + 1;
+            const std::int64_t left =
+                (options.max_evaluations - spent) / static_cast<std::int64_t>(options.searches) + 1;
             run_epoch(searches, std::min(kEpoch, left), progress, context);
         } catch (const geometry::Cancelled&) {
             return best;

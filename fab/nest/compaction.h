@@ -30,6 +30,7 @@ struct CompactionOptions {
     std::uint64_t seed = 1;
     std::int64_t max_evaluations = 2'000'000;  // Of all searches together.
     double time_s = 0.0;                       // By the context's clock; 0: no limit.
+    std::size_t searches = 2;                  // From the same start, at least 1.
 };
 
 struct FirstOptions {
@@ -46,7 +47,7 @@ Packing first_packing(const BoardPlan& plan,
 // The smallest packing found from `start` on. `accept` decides on each improvement before it
 // counts (from the calling thread): the caller's proof. A stop request ends the search early.
 //
-// Two searches with different random numbers exchange what they find after equal numbers of
+// The searches, of different random numbers, exchange what they find after equal numbers of
 // evaluations: the result depends on plan, start, seed and max_evaluations (if that is what ends
 // it), not on threads.
 Packing compact(const BoardPlan& plan,

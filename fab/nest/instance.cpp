@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <map>
 #include <optional>
+#include <thread>
 
 #include "fab/nest/heap_start.h"
 #include "fab/nest/instance_bins.h"
@@ -187,48 +189,104 @@ struct Judge {
     std::function<bool(const Packing&)> accept;  // Of all: sound, and taken as the best so far.
 };
 
-// A strip in stretches that are searched one by one, each with its share of the work.
+// A strip in stretches, each with items and a sheet of its own.
+struct Stretches {
+    std::vector<std::vector<std::size_t>> items;
+    std::vector<Packing> packings;
+    std::vector<BoardPlan> plans;
+};
+
+Stretches stretches_of(const BoardPlan& plan, const Packing& start) {
+    const auto count = static_cast<std::size_t>(start.extent.bins);
+    Stretches out{std::vector<std::vector<std::size_t>>(count), std::vector<Packing>(count),
+                  std::vector<BoardPlan>(count)};
+    for (std::size_t item = 0; item < start.positions.size(); ++item) {
+        out.items[static_cast<std::size_t>(start.positions[item].bin)].push_back(item);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        BoardPlan& own = out.plans[k];
+        own.rooms = {plan.rooms[k]};
+        for (const std::size_t item : out.items[k]) {
+            own.part_of.push_back(own.parts.size());
+            own.parts.push_back(plan.part(item));
+            own.turned.push_back(plan.turned[plan.part_of[item]]);
+            out.packings[k].positions.push_back(start.positions[item]);
+            out.packings[k].positions.back().bin = 0;
+        }
+        const bool last = k + 1 == count;
+        out.packings[k].extent = {1, last ? start.extent.last_width : plan.rooms[k].width};
+    }
+    return out;
+}
+
+// Calls `work` for both, at once if two threads may be used; the first by the calling thread.
+template <typename Work>
+void for_both(std::size_t first, std::size_t second, bool at_once, Work work) {
+    std::exception_ptr failure;
+    {
+        std::jthread other;
+        const auto guarded = [&] {
+            try {
+                work(second);
+            } catch (...) {
+                failure = std::current_exception();
+            }
+        };
+        if (at_once && second != first) {
+            other = std::jthread(guarded);
+        }
+        work(first);
+        if (!at_once && second != first) {
+            guarded();
+        }
+    }
+    if (failure) {
+        std::rethrow_exception(failure);
+    }
+}
+
+// The stretches are searched with equal shares of the work: few one by one, each by two searches,
+// many in pairs, by one search each.
 Packing compact_stretches(const BoardPlan& plan,
                           const Packing& start,
                           const CompactionOptions& options,
                           const geometry::Context& context,
                           const Judge& judge) {
-    const auto count = static_cast<std::size_t>(start.extent.bins);
-    std::vector<std::vector<std::size_t>> items(count);
-    for (std::size_t item = 0; item < start.positions.size(); ++item) {
-        items[static_cast<std::size_t>(start.positions[item].bin)].push_back(item);
-    }
-    std::vector<Packing> stretches(count);
-    std::vector<BoardPlan> plans(count);
-    for (std::size_t k = 0; k < count; ++k) {
-        plans[k].rooms = {plan.rooms[k]};
-        for (const std::size_t item : items[k]) {
-            plans[k].part_of.push_back(plans[k].parts.size());
-            plans[k].parts.push_back(plan.part(item));
-            plans[k].turned.push_back(plan.turned[plan.part_of[item]]);
-            stretches[k].positions.push_back(start.positions[item]);
-            stretches[k].positions.back().bin = 0;
-        }
-        stretches[k].extent = {1, k + 1 == count ? start.extent.last_width : plan.rooms[k].width};
-    }
-    judge.accept(in_a_row(stretches, items));
+    constexpr std::size_t kMany = 4;
+    const Stretches whole = stretches_of(plan, start);
+    const std::size_t count = whole.plans.size();
+    const std::size_t step = count >= kMany ? 2 : 1;
+    const bool at_once = step == 2 && context.threads > 1;
     CompactionOptions share = options;
+    share.searches = step == 2 ? 1 : options.searches;
     share.max_evaluations = options.max_evaluations / start.extent.bins;
-    share.time_s = options.time_s / start.extent.bins;
-    for (std::size_t k = 0; k < count && !context.stop.stop_requested(); ++k) {
-        geometry::Context part = context;
-        part.progress = [&](std::string_view stage, double fraction) {
-            context.report(stage, (static_cast<double>(k) + fraction) / static_cast<double>(count));
-        };
-        const Packing before = stretches[k];
-        stretches[k] = compact(plans[k], before, share, part, [&](const Packing& better) {
-            return judge.sound(alone(better, items[k], start.positions.size()));
+    const double rounds = std::ceil(static_cast<double>(count) / (at_once ? 2.0 : 1.0));
+    share.time_s = options.time_s / rounds;
+    std::vector<Packing> found = whole.packings;
+    judge.accept(in_a_row(found, whole.items));
+    for (std::size_t k = 0; k < count && !context.stop.stop_requested(); k += step) {
+        const std::vector<Packing> before = found;
+        const std::size_t next = std::min(k + step, count);
+        for_both(k, next - 1, at_once, [&](std::size_t i) {
+            geometry::Context part = context;
+            part.threads = step == 2 ? 1 : context.threads;
+            part.progress = nullptr;
+            if (i == k) {
+                part.progress = [&](std::string_view stage, double fraction) {
+                    const double done = fraction * static_cast<double>(next - k);
+                    context.report(stage,
+                                   (static_cast<double>(k) + done) / static_cast<double>(count));
+                };
+            }
+            found[i] = compact(whole.plans[i], before[i], share, part, [&](const Packing& better) {
+                return judge.sound(alone(better, whole.items[i], start.positions.size()));
+            });
         });
-        if (!judge.accept(in_a_row(stretches, items))) {
-            stretches[k] = before;
+        if (!judge.accept(in_a_row(found, whole.items))) {
+            found = before;
         }
     }
-    return in_a_row(stretches, items);
+    return in_a_row(found, whole.items);
 }
 
 }  // namespace
