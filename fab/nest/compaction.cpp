@@ -61,6 +61,18 @@ void run_epoch(std::vector<std::unique_ptr<Explorer>>& searches,
     }
 }
 
+// The one that found the smallest packing below `area`, if any.
+const Explorer* ahead_of(const std::vector<std::unique_ptr<Explorer>>& searches, double area) {
+    const Explorer* ahead = nullptr;
+    for (const auto& search : searches) {
+        if (search->best_area() < area) {
+            ahead = search.get();
+            area = search->best_area();
+        }
+    }
+    return ahead;
+}
+
 // A strip without end starts at what its parts need if they fill it by half.
 double first_width(const BoardPlan& plan) {
     const BoardPlan::Room& room = plan.rooms.front();
@@ -197,14 +209,10 @@ Packing compact(const BoardPlan& plan,
             return best;
         }
         std::int64_t done = 0;
-        const Explorer* ahead = nullptr;
         for (const auto& search : searches) {
             done += search->evaluations();
-            if (search->best_area() < best_area &&
-                (ahead == nullptr || search->best_area() < ahead->best_area())) {
-                ahead = search.get();
-            }
         }
+        const Explorer* ahead = ahead_of(searches, best_area);
         idle_epochs = done == spent ? idle_epochs + 1 : 0;
         spent = done;
         best.evaluations = spent;
