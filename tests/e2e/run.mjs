@@ -417,8 +417,12 @@ test('windows over the page are accessible and close with Escape', async () => {
     await page.getByRole('button', { name: button }).click();
     await page.waitForSelector('dialog[open]');
     await assertAccessible(page, button);
-    await page.keyboard.press('Escape');
-    await page.waitForSelector('dialog', { state: 'detached' });
+    // An open list of suggestions takes the first one for itself.
+    for (let press = 0; press < 3 && (await page.locator('dialog').count()) > 0; press += 1) {
+      await page.keyboard.press('Escape');
+      await page.waitForSelector('dialog', { state: 'detached', timeout: 3000 }).catch(() => {});
+    }
+    assert.equal(await page.locator('dialog').count(), 0, button);
   }
   await close();
 });
