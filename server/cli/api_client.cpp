@@ -120,6 +120,14 @@ json ApiClient::get(const std::string& path) {
     return answer_of(client_->Get(kRoot + path), options_.url);
 }
 
+json ApiClient::readiness() {
+    httplib::Result result = client_->Get(std::string(kRoot) + "/readyz");
+    if (result && result->status == 503) {
+        result->status = 200;  // Not ready is an answer too.
+    }
+    return answer_of(result, options_.url);
+}
+
 json ApiClient::post(const std::string& path, const json& body) {
     return answer_of(client_->Post(kRoot + path, text_of(body), "application/json"), options_.url);
 }
