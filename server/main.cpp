@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
     add_nest_command(app, common);
     add_materials_command(app, common);
     add_recut_command(app, common);
+    add_test_card_command(app, common);
 
     try {
         app.parse(argc, argv);

@@ -45,6 +45,7 @@ void add_weave_command(CLI::App& app, const CommonOptions& common);
 void add_sample_command(CLI::App& app, const CommonOptions& common);
 void add_nest_command(CLI::App& app, const CommonOptions& common);
 void add_materials_command(CLI::App& app, const CommonOptions& common);
+void add_test_card_command(CLI::App& app, const CommonOptions& common);
 void add_recut_command(CLI::App& app, const CommonOptions& common);
 void add_audit_command(CLI::App& app, const CommonOptions& common);
 void add_burn_picture_command(CLI::App& app, const CommonOptions& common);

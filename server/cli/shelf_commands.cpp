@@ -6,9 +6,10 @@
 #include <cstddef>
 #include <cstdio>
 #include <fstream>
+#include <iostream>
+#include <iterator>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -93,14 +94,19 @@ void export_shelf(const std::string& shelf, const ShelfOptions& options) {
     }
 }
 
+std::string text_of(const std::string& file) {
+    if (file == "-") {
+        return {std::istreambuf_iterator<char>(std::cin), {}};
+    }
+    constexpr std::size_t kMostBytes = std::size_t{8} << 20;
+    const std::vector<std::byte> bytes = read_input_file(file, kMostBytes);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 void import_shelf(const std::string& shelf,
                   const ShelfOptions& options,
                   const CommonOptions& common) {
-    constexpr std::size_t kMostBytes = std::size_t{8} << 20;
-    const std::vector<std::byte> bytes = read_input_file(options.file, kMostBytes);
-    const json body =
-        json::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
-                    nullptr, /*allow_exceptions=*/false);
+    const json body = json::parse(text_of(options.file), nullptr, /*allow_exceptions=*/false);
     if (!body.is_object() || body.count(shelf) == 0) {
         throw UsageError(fmt::format("{}: is no JSON with a list \"{}\", as export writes it",
                                      options.file, shelf));
