@@ -11,6 +11,7 @@
 #include "server/store/sqlite/errors.h"
 #include "server/store/sqlite/rescue.h"
 #include "server/store/sqlite/schema.h"
+#include "server/store/sqlite/session.h"
 #include "server/store/store_error.h"
 
 namespace leafcutter::server {
@@ -22,7 +23,7 @@ constexpr int kPatienceMs = 5000;
 }  // namespace
 
 struct Writer::Request {
-    const std::function<void(SQLite::Database&)>* work = nullptr;
+    const SqlDatabase::Work* work = nullptr;
     std::exception_ptr error;
     bool done = false;
 };
@@ -46,7 +47,7 @@ Writer::~Writer() {
     }
 }
 
-void Writer::run(const std::function<void(SQLite::Database&)>& work) {
+void Writer::run(const SqlDatabase::Work& work) {
     Request request;
     request.work = &work;
     wait_until_done(request);
@@ -119,10 +120,11 @@ void Writer::loop(const std::stop_token& stop) {
 void Writer::commit_group(const std::vector<Request*>& group) {
     try {
         database_->exec("BEGIN IMMEDIATE");
+        SqliteSession session(*database_);
         for (Request* request : group) {
             database_->exec("SAVEPOINT request");
             try {
-                (*request->work)(*database_);
+                (*request->work)(session);
             } catch (...) {  // Travels to whoever asked; the others of the group go on.
                 request->error = std::current_exception();
                 database_->exec("ROLLBACK TO request");

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "server/latency_histogram.h"
+#include "server/store/sql/session.h"
 
 namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
 class Database;
@@ -34,7 +35,7 @@ public:
 
     // Runs `work` inside a transaction and returns when it is on disk. Work that throws is rolled
     // back alone, and what it threw is thrown here; SQLite's errors as StoreError.
-    void run(const std::function<void(SQLite::Database&)>& work);
+    void run(const SqlDatabase::Work& work);
 
     // Not empty after the disk failed a commit, or after give_up(): nothing more is written.
     std::string trouble() const;

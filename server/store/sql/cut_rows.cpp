@@ -1,15 +1,14 @@
-#include "server/store/sqlite/cut_rows.h"
+#include "server/store/sql/cut_rows.h"
 
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
-#include "server/store/ids.h"
-#include "server/store/sqlite/events.h"
+#include "server/store/sql/events.h"
+#include "server/store/sql/session.h"
 
 namespace leafcutter::server {
 
@@ -52,101 +51,97 @@ std::string written(const BeamRecord& beam) {
                        beam.at_mm[1], beam.certain, beam.position_kept);
 }
 
-CutRecord cut_from(SQLite::Database& database, SQLite::Statement& row) {
+CutRecord cut_from(SqlSession& session, SqlStatement& row) {
     CutRecord cut;
-    cut.ordinal = row.getColumn(0).getInt64();
-    cut.id = row.getColumn(1).getString();
-    cut.job = row.getColumn(2).getString();
-    cut.device = row.getColumn(3).getString();
-    cut.sheets = parted(row.getColumn(4).getString());
-    cut.position = static_cast<std::size_t>(row.getColumn(5).getInt64());
-    cut.state = cut_state_named(row.getColumn(6).getString()).value_or(CutState::Failed);
-    cut.version = row.getColumn(7).getInt64();
-    cut.lines_total = row.getColumn(8).getInt64();
-    cut.lines_sent = row.getColumn(9).getInt64();
-    cut.lines_acknowledged = row.getColumn(10).getInt64();
-    cut.reason = row.getColumn(11).getString();
-    cut.created_ms = row.getColumn(12).getInt64();
-    cut.updated_ms = row.getColumn(13).getInt64();
-    cut.rest_of = row.getColumn(14).getString();
-    cut.beam = beam_from(row.getColumn(16).getString());
+    cut.ordinal = row.column(0).int64();
+    cut.id = row.column(1).text();
+    cut.job = row.column(2).text();
+    cut.device = row.column(3).text();
+    cut.sheets = parted(row.column(4).text());
+    cut.position = static_cast<std::size_t>(row.column(5).int64());
+    cut.state = cut_state_named(row.column(6).text()).value_or(CutState::Failed);
+    cut.version = row.column(7).int64();
+    cut.lines_total = row.column(8).int64();
+    cut.lines_sent = row.column(9).int64();
+    cut.lines_acknowledged = row.column(10).int64();
+    cut.reason = row.column(11).text();
+    cut.created_ms = row.column(12).int64();
+    cut.updated_ms = row.column(13).int64();
+    cut.rest_of = row.column(14).text();
+    cut.beam = beam_from(row.column(16).text());
     if (cut.is_rest()) {
-        cut.program_sha256 = row.getColumn(15).getString();
+        cut.program_sha256 = row.column(15).text();
         return cut;
     }
-    SQLite::Statement program(database,
-                              "SELECT program_sha256 FROM sheet WHERE job = ? AND number = ?");
+    SqlStatement program(session, "SELECT program_sha256 FROM sheet WHERE job = ? AND number = ?");
     program.bind(1, cut.job);
     program.bind(2, cut.sheet());
-    if (program.executeStep()) {
-        cut.program_sha256 = program.getColumn(0).getString();
+    if (program.step()) {
+        cut.program_sha256 = program.column(0).text();
     }
     return cut;
 }
 
-std::optional<CutRecord> find_cut(SQLite::Database& database, const std::string& id) {
-    SQLite::Statement query(database, std::string(kSelectCut) + "WHERE id = ?");
+std::optional<CutRecord> find_cut(SqlSession& session, const std::string& id) {
+    SqlStatement query(session, std::string(kSelectCut) + "WHERE id = ?");
     query.bind(1, id);
-    if (!query.executeStep()) {
+    if (!query.step()) {
         return std::nullopt;
     }
-    return cut_from(database, query);
+    return cut_from(session, query);
 }
 
-std::vector<CutRecord> open_cuts(SQLite::Database& database, const std::string& device) {
-    SQLite::Statement query(
-        database,
+std::vector<CutRecord> open_cuts(SqlSession& session, const std::string& device) {
+    SqlStatement query(
+        session,
         std::string(kSelectCut) +
             "WHERE device = ? AND state IN ('waiting','armed','cutting','paused','awaiting-sheet') "
             "ORDER BY ordinal");
     query.bind(1, device);
     std::vector<CutRecord> cuts;
-    while (query.executeStep()) {
-        cuts.push_back(cut_from(database, query));
+    while (query.step()) {
+        cuts.push_back(cut_from(session, query));
     }
     return cuts;
 }
 
-void tell(SQLite::Database& database, const CutRecord& cut, std::string note) {
+void tell(SqlSession& session, const CutRecord& cut, std::string note) {
     EventRecord event;
     event.type = "cut";
     event.subject = cut.id;
     event.job = cut.job;
     event.note = std::move(note);
-    append_event(database, event);
+    append_event(session, event);
 }
 
-void tell_job_of(SQLite::Database& database, const CutRecord& cut, std::string note) {
+void tell_job_of(SqlSession& session, const CutRecord& cut, std::string note) {
     EventRecord event;
     event.type = "job";
     event.subject = cut.job;
     event.job = cut.job;
     event.note = std::move(note);
-    append_event(database, event);
+    append_event(session, event);
 }
 
-bool move_cut(SQLite::Database& database,
-              const CutRecord& cut,
-              CutState to,
-              const std::string& reason) {
+bool move_cut(SqlSession& session, const CutRecord& cut, CutState to, const std::string& reason) {
     if (!may_follow(cut.state, to)) {
         throw std::logic_error(
             fmt::format("a cut never goes from {} to {}", to_string(cut.state), to_string(to)));
     }
-    SQLite::Statement update(database,
-                             "UPDATE cut SET state = ?, reason = ?, version = version + 1, "
-                             "updated_ms = ? WHERE id = ? AND state = ?");
+    SqlStatement update(session,
+                        "UPDATE cut SET state = ?, reason = ?, version = version + 1, "
+                        "updated_ms = ? WHERE id = ? AND state = ?");
     update.bind(1, std::string(to_string(to)));
     update.bind(2, reason);
-    update.bind(3, wall_clock_ms());
+    update.bind(3, session.now_ms());
     update.bind(4, cut.id);
     update.bind(5, std::string(to_string(cut.state)));
-    if (update.exec() == 0) {
+    if (update.run() == 0) {
         return false;
     }
-    tell(database, cut, fmt::format("{} -> {}", to_string(cut.state), to_string(to)));
+    tell(session, cut, fmt::format("{} -> {}", to_string(cut.state), to_string(to)));
     if (is_final(to)) {
-        tell_job_of(database, cut, fmt::format("cut {}", to_string(to)));
+        tell_job_of(session, cut, fmt::format("cut {}", to_string(to)));
     }
     return true;
 }

@@ -1,20 +1,17 @@
-// Sheets and remnants in SQLite.
+// Sheets and remnants in SQL.
 
 #pragma once
 
 #include "server/store/stock_store.h"
 
-namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
-class Database;
-}
-
 namespace leafcutter::server {
 
-class Database;
+class SqlDatabase;
+class SqlSession;
 
-class SqliteStockStore final : public StockStore {
+class SqlStockStore final : public StockStore {
 public:
-    explicit SqliteStockStore(Database& database) : database_(database) {}
+    explicit SqlStockStore(SqlDatabase& database) : database_(database) {}
 
     std::vector<StockRecord> list() const override;
     std::optional<StockRecord> find(const std::string& id) const override;
@@ -23,11 +20,11 @@ public:
     bool remove(const std::string& id) override;
 
 private:
-    Database& database_;
+    SqlDatabase& database_;
 };
 
 // Within a transaction: books that a sheet of a job was cut. One of the stock it was planned on is
 // gone, and its offcut is there; both or, for a sheet that knows neither, nothing.
-void book_cut_sheet(SQLite::Database& database, const std::string& job, int sheet);
+void book_cut_sheet(SqlSession& session, const std::string& job, int sheet);
 
 }  // namespace leafcutter::server

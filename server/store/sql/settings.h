@@ -1,4 +1,4 @@
-// Settings in SQLite.
+// Settings in SQL.
 
 #pragma once
 
@@ -6,18 +6,18 @@
 
 namespace leafcutter::server {
 
-class Database;
+class SqlDatabase;
 
-class SqliteSettings final : public Settings {
+class SqlSettings final : public Settings {
 public:
-    explicit SqliteSettings(Database& database) : database_(database) {}
+    explicit SqlSettings(SqlDatabase& database) : database_(database) {}
 
     std::optional<std::string> get(const std::string& key) const override;
     void put(const std::string& key, const std::string& json) override;
     void remove(const std::string& key) override;
 
 private:
-    Database& database_;
+    SqlDatabase& database_;
 };
 
 }  // namespace leafcutter::server

@@ -1,4 +1,4 @@
-// Machines in SQLite.
+// Machines in SQL.
 
 #pragma once
 
@@ -6,11 +6,11 @@
 
 namespace leafcutter::server {
 
-class Database;
+class SqlDatabase;
 
-class SqliteDeviceStore final : public DeviceStore {
+class SqlDeviceStore final : public DeviceStore {
 public:
-    explicit SqliteDeviceStore(Database& database) : database_(database) {}
+    explicit SqlDeviceStore(SqlDatabase& database) : database_(database) {}
 
     std::vector<DeviceRecord> list() const override;
     std::optional<DeviceRecord> find(const std::string& id) const override;
@@ -18,7 +18,7 @@ public:
     bool remove(const std::string& id) override;
 
 private:
-    Database& database_;
+    SqlDatabase& database_;
 };
 
 }  // namespace leafcutter::server

@@ -1,23 +1,20 @@
-// The event log in SQLite.
+// The event log in SQL.
 
 #pragma once
 
 #include "server/store/event_log.h"
 
-namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
-class Database;
-}
-
 namespace leafcutter::server {
 
-class Database;
+class SqlDatabase;
+class SqlSession;
 
 // Within a writer's transaction.
-void append_event(SQLite::Database& database, const EventRecord& event);
+void append_event(SqlSession& session, const EventRecord& event);
 
-class SqliteEventLog final : public EventLog {
+class SqlEventLog final : public EventLog {
 public:
-    explicit SqliteEventLog(Database& database) : database_(database) {}
+    explicit SqlEventLog(SqlDatabase& database) : database_(database) {}
 
     std::int64_t first_seq() const override;
     std::int64_t last_seq() const override;
@@ -25,7 +22,7 @@ public:
     int forget(std::int64_t before_ms, int limit) override;
 
 private:
-    Database& database_;
+    SqlDatabase& database_;
 };
 
 }  // namespace leafcutter::server

@@ -1,4 +1,4 @@
-// Jobs in SQLite.
+// Jobs in SQL.
 
 #pragma once
 
@@ -6,11 +6,11 @@
 
 namespace leafcutter::server {
 
-class Database;
+class SqlDatabase;
 
-class SqliteJobStore final : public JobStore {
+class SqlJobStore final : public JobStore {
 public:
-    explicit SqliteJobStore(Database& database) : database_(database) {}
+    explicit SqlJobStore(SqlDatabase& database) : database_(database) {}
 
     AddedJob add(const NewJob& job, const std::optional<IdempotencyKey>& key) override;
     JobRecord add_ready(const NewJob& job,
@@ -44,7 +44,7 @@ public:
     void recover() override;
 
 private:
-    Database& database_;
+    SqlDatabase& database_;
 };
 
 }  // namespace leafcutter::server

@@ -1,4 +1,4 @@
-// Named records in SQLite, one table for each kind.
+// Named records in SQL, one table for each kind.
 
 #pragma once
 
@@ -10,12 +10,12 @@
 
 namespace leafcutter::server {
 
-class Database;
+class SqlDatabase;
 
-class SqliteNamedRecords final : public NamedRecords {
+class SqlNamedRecords final : public NamedRecords {
 public:
     // The table has the columns id and record.
-    SqliteNamedRecords(Database& database, std::string table)
+    SqlNamedRecords(SqlDatabase& database, std::string table)
         : database_(database), table_(std::move(table)) {}
 
     std::vector<NamedRecord> list() const override;
@@ -25,7 +25,7 @@ public:
     bool remove(const std::string& id) override;
 
 private:
-    Database& database_;
+    SqlDatabase& database_;
     const std::string table_;
 };
 

@@ -1,4 +1,4 @@
-// Cuts in SQLite.
+// Cuts in SQL.
 
 #pragma once
 
@@ -6,11 +6,11 @@
 
 namespace leafcutter::server {
 
-class Database;
+class SqlDatabase;
 
-class SqliteCutStore final : public CutStore {
+class SqlCutStore final : public CutStore {
 public:
-    explicit SqliteCutStore(Database& database) : database_(database) {}
+    explicit SqlCutStore(SqlDatabase& database) : database_(database) {}
 
     std::vector<CutRecord> add(const std::string& job, const std::vector<CutWish>& wishes) override;
     std::optional<CutRecord> find(const std::string& id) const override;
@@ -34,7 +34,7 @@ public:
     std::vector<std::string> recover() override;
 
 private:
-    Database& database_;
+    SqlDatabase& database_;
 };
 
 }  // namespace leafcutter::server

@@ -1,4 +1,4 @@
-// Accounts and the audit log in SQLite.
+// Accounts and the audit log in SQL.
 
 #pragma once
 
@@ -6,11 +6,11 @@
 
 namespace leafcutter::server {
 
-class Database;
+class SqlDatabase;
 
-class SqliteAccountStore final : public AccountStore {
+class SqlAccountStore final : public AccountStore {
 public:
-    explicit SqliteAccountStore(Database& database) : database_(database) {}
+    explicit SqlAccountStore(SqlDatabase& database) : database_(database) {}
 
     StoredAccounts load() const override;
     void put(const User& user) override;
@@ -26,7 +26,7 @@ public:
 private:
     void erase(const char* statement, const std::string& key);
 
-    Database& database_;
+    SqlDatabase& database_;
 };
 
 }  // namespace leafcutter::server
