@@ -39,7 +39,7 @@ const char* const kSelectCut =
     "SELECT cut.ordinal, cut.id, cut.job, cut.device, cut.sheets, cut.position, cut.state, "
     "cut.version, "
     "cut.lines_total, cut.lines_sent, cut.lines_acknowledged, cut.reason, cut.created_ms, "
-    "cut.updated_ms, cut.rest_of, cut.rest_sha256, cut.beam FROM cut ";
+    "cut.updated_ms, cut.rest_of, cut.rest_sha256, cut.beam, cut.owner, cut.fence FROM cut ";
 
 std::string joined(const std::vector<int>& numbers) {
     return fmt::format("{}", fmt::join(numbers, ","));
@@ -69,6 +69,8 @@ CutRecord cut_from(SqlSession& session, SqlStatement& row) {
     cut.updated_ms = row.column(13).int64();
     cut.rest_of = row.column(14).text();
     cut.beam = beam_from(row.column(16).text());
+    cut.owner = row.column(17).text();
+    cut.fence = row.column(18).int64();
     if (cut.is_rest()) {
         cut.program_sha256 = row.column(15).text();
         return cut;

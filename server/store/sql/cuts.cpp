@@ -9,6 +9,7 @@
 #include "server/store/ids.h"
 #include "server/store/sql/cut_rows.h"
 #include "server/store/sql/events.h"
+#include "server/store/sql/fleet.h"
 #include "server/store/sql/job_rows.h"
 #include "server/store/sql/session.h"
 #include "server/store/sql/stock.h"
@@ -81,6 +82,25 @@ void count_sheet_as_cut(SqlSession& session, const CutRecord& cut) {
     }
 }
 
+void disarm(SqlSession& session, const CutRecord& cut, const std::string& why) {
+    if (cut.state == CutState::Armed) {
+        move_cut(session, cut, cut.before_arming(), why);
+    }
+}
+
+struct Holder {
+    std::string node;
+    std::int64_t fence = 0;
+};
+
+void set_holder(SqlSession& session, const std::string& id, const Holder& holder) {
+    SqlStatement update(session, "UPDATE cut SET owner = ?, fence = ? WHERE id = ?");
+    update.bind(1, holder.node);
+    update.bind(2, holder.fence);
+    update.bind(3, id);
+    update.run();
+}
+
 struct NewCut {
     std::string job;
     std::string device;
@@ -127,6 +147,7 @@ std::vector<CutRecord> SqlCutStore::add(const std::string& job,
                                         const std::vector<CutWish>& wishes) {
     std::vector<CutRecord> cuts;
     database_.write([&](SqlSession& session) {
+        cuts.clear();
         for (const CutWish& wish : wishes) {
             std::vector<int> sheets = wish.sheets;
             check_sheets(session, job, sheets);
@@ -194,10 +215,19 @@ bool SqlCutStore::arm(const CutRecord& wanted) {
 bool SqlCutStore::begin_sheet(const CutRecord& cut) {
     bool begun = false;
     database_.write([&](SqlSession& session) {
+        const std::optional<std::int64_t> fence = held_fence(session, scope_, cut.device);
+        if (!fence || !is_active(session, scope_)) {
+            begun = false;
+            disarm(session, cut,
+                   fence ? "its station takes up no work now"
+                         : "its station does not hold the machine now");
+            return;
+        }
         if (cut.state != CutState::Armed || !move_cut(session, cut, CutState::Cutting, "")) {
             return;
         }
         set_progress(session, cut.id, {});
+        set_holder(session, cut.id, {scope_.node, *fence});
         SqlStatement intent(
             session,
             "INSERT INTO cut_intent(cut, sheet, program_sha256, at_ms) VALUES(?, ?, ?, ?)");
@@ -234,7 +264,8 @@ bool SqlCutStore::finish_sheet(const CutRecord& wanted, const CutProgress& progr
 }
 
 void SqlCutStore::record_progress(const std::string& id, const CutProgress& progress) {
-    database_.write([&](SqlSession& session) { set_progress(session, id, progress); });
+    database_.write_soon(
+        id, [id, progress](SqlSession& session) { set_progress(session, id, progress); });
 }
 
 void SqlCutStore::record_beam(const std::string& id, const BeamRecord& beam) {
@@ -302,6 +333,48 @@ std::int64_t SqlCutStore::count(CutState state) const {
         counted = query.step() ? query.column(0).int64() : 0;
     });
     return counted;
+}
+
+bool SqlCutStore::reclaim(const CutRecord& in_work) {
+    const auto seen = find(in_work.id);
+    if (!seen || seen->state != CutState::Interrupted) {
+        return false;
+    }
+    bool reclaimed = false;
+    database_.write([&](SqlSession& session) {
+        const auto cut = find_cut(session, in_work.id);
+        reclaimed = cut && cut->state == CutState::Interrupted && cut->owner == scope_.node &&
+                    cut->position == in_work.position && is_open_ended(session, *cut);
+        if (!reclaimed) {
+            return;
+        }
+        SqlStatement update(session,
+                            "UPDATE cut SET state = ?, reason = '', version = version + 1, "
+                            "updated_ms = ? WHERE id = ?");
+        update.bind(1, to_string(in_work.state));
+        update.bind(2, session.now_ms());
+        update.bind(3, cut->id);
+        update.run();
+        tell(session, *cut,
+             fmt::format("interrupted -> {}: its station is back and never stopped",
+                         to_string(in_work.state)));
+        tell_job_of(session, *cut, fmt::format("cut {}", to_string(in_work.state)));
+    });
+    return reclaimed;
+}
+
+std::vector<CutRecord> SqlCutStore::in_hand() const {
+    std::vector<CutRecord> cuts;
+    database_.read([&](SqlSession& session) {
+        cuts.clear();
+        SqlStatement query(
+            session, std::string(kSelectCut) + "WHERE state IN ('cutting','paused') AND owner = ?");
+        query.bind(1, scope_.node);
+        while (query.step()) {
+            cuts.push_back(cut_from(session, query));
+        }
+    });
+    return cuts;
 }
 
 std::vector<std::string> SqlCutStore::recover() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "server/store/cut_store.h"
+#include "server/store/fleet_store.h"
 
 namespace leafcutter::server {
 
@@ -10,7 +11,8 @@ class SqlDatabase;
 
 class SqlCutStore final : public CutStore {
 public:
-    explicit SqlCutStore(SqlDatabase& database) : database_(database) {}
+    SqlCutStore(SqlDatabase& database, const NodeScope& scope)
+        : database_(database), scope_(scope) {}
 
     std::vector<CutRecord> add(const std::string& job, const std::vector<CutWish>& wishes) override;
     std::optional<CutRecord> find(const std::string& id) const override;
@@ -31,10 +33,13 @@ public:
                                       const std::string& program_sha256) override;
     std::optional<CutRecord> last_begun_on(const std::string& device) const override;
     std::int64_t count(CutState state) const override;
+    bool reclaim(const CutRecord& in_work) override;
+    std::vector<CutRecord> in_hand() const override;
     std::vector<std::string> recover() override;
 
 private:
     SqlDatabase& database_;
+    const NodeScope scope_;
 };
 
 }  // namespace leafcutter::server

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "server/store/sql/fleet.h"
 #include "server/store/sql/job_rows.h"
 #include "server/store/sql/jobs.h"
 #include "server/store/sql/session.h"
@@ -105,6 +106,17 @@ std::optional<Place> place_between(const Neighbours& around) {
     return Place{around.there->priority, middle};
 }
 
+void take(SqlSession& session, const NodeScope& scope, const std::string& id) {
+    SqlStatement update(session,
+                        "UPDATE job SET attempt = attempt + 1, fence = fence + 1, owner = ?, "
+                        "lease_until_ms = ? WHERE id = ?");
+    const std::int64_t lease_ms = scope.lease.count();
+    update.bind(1, scope.node);
+    update.bind(2, lease_ms > 0 ? session.now_ms() + lease_ms : 0);
+    update.bind(3, id);
+    update.run();
+}
+
 bool is_queued(SqlSession& session, const std::string& id) {
     SqlStatement query(session, "SELECT 1 FROM job WHERE id = ? AND state = 'queued'");
     query.bind(1, id);
@@ -161,19 +173,24 @@ QueueCounts SqlJobStore::queue_counts() const {
 
 std::optional<JobRecord> SqlJobStore::claim() {
     std::optional<JobRecord> job;
-    database_.write([&](SqlSession& session) {
-        SqlStatement query(session, fmt::format("SELECT id FROM job {}LIMIT 1", kInOrder));
-        if (setting(session, kPause) || !query.step()) {
-            return;
-        }
-        const std::string id = query.column(0).text();
-        query.reset();
-        SqlStatement count(session, "UPDATE job SET attempt = attempt + 1 WHERE id = ?");
-        count.bind(1, id);
-        count.run();
-        move_job(session, id, JobState::Queued, JobState::Computing);
-        job = find_job(session, id);
-    });
+    database_.write(
+        [&](SqlSession& session) {
+            job.reset();
+            if (setting(session, kPause) || !is_active(session, scope_)) {
+                return;
+            }
+            SqlStatement query(session, fmt::format("SELECT id FROM job {}LIMIT 1 {}", kInOrder,
+                                                    session.for_update_of_free_rows()));
+            if (!query.step()) {
+                return;
+            }
+            const std::string id = query.column(0).text();
+            query.reset();
+            take(session, scope_, id);
+            move_job(session, id, JobState::Queued, JobState::Computing);
+            job = find_job(session, id);
+        },
+        WriteOrder::Beside);
     return job;
 }
 

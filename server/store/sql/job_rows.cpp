@@ -14,7 +14,7 @@ namespace leafcutter::server {
 const char* const kSelectJob =
     "SELECT ordinal, id, name, state, version, created_ms, updated_ms, file_name, file_bytes, "
     "file_sha256, params, attempt, error_kind, error_code, error_detail, summary, recut_of, "
-    "priority, retries, retry_cause FROM job ";
+    "priority, retries, retry_cause, owner, fence, lease_until_ms FROM job ";
 
 JobRecord job_from(SqlStatement& row) {
     JobRecord job;
@@ -38,6 +38,9 @@ JobRecord job_from(SqlStatement& row) {
     job.priority = row.column(17).integer();
     job.retries = row.column(18).integer();
     job.retry_cause = row.column(19).text();
+    job.owner = row.column(20).text();
+    job.fence = row.column(21).int64();
+    job.lease_until_ms = row.column(22).int64();
     return job;
 }
 
@@ -182,22 +185,50 @@ void remove_job(SqlSession& session, const std::string& id) {
     tell_job(session, id, "removed");
 }
 
-bool move_job(SqlSession& session, const std::string& id, JobState from, JobState to) {
+namespace {
+
+bool change_state(SqlSession& session, const JobClaim& job, JobState from, JobState to) {
     if (!may_follow(from, to)) {
         throw std::logic_error(
             fmt::format("a job never goes from {} to {}", to_string(from), to_string(to)));
     }
-    SqlStatement update(session,
-                        "UPDATE job SET state = ?, version = version + 1, updated_ms = ? "
-                        "WHERE id = ? AND state = ?");
-    update.bind(1, std::string(to_string(to)));
+    SqlStatement update(session, fmt::format("UPDATE job SET state = ?, version = version + 1, "
+                                             "updated_ms = ? WHERE id = ? AND state = ?{}",
+                                             job.fence ? " AND fence = ?" : ""));
+    update.bind(1, to_string(to));
     update.bind(2, session.now_ms());
-    update.bind(3, id);
-    update.bind(4, std::string(to_string(from)));
+    update.bind(3, job.id);
+    update.bind(4, to_string(from));
+    if (job.fence) {
+        update.bind(5, *job.fence);
+    }
     if (update.run() == 0) {
         return false;
     }
-    tell_job(session, id, fmt::format("{} -> {}", to_string(from), to_string(to)));
+    tell_job(session, job.id, fmt::format("{} -> {}", to_string(from), to_string(to)));
+    return true;
+}
+
+}  // namespace
+
+bool move_job(SqlSession& session, const std::string& id, JobState from, JobState to) {
+    return change_state(session, {id}, from, to);
+}
+
+bool settle_job(SqlSession& session, const JobClaim& job, JobState to) {
+    return change_state(session, job, JobState::Computing, to);
+}
+
+bool give_back(SqlSession& session, const JobRecord& job, const std::string& how) {
+    if (job.attempt < JobStore::kMostAttempts) {
+        return move_job(session, job.id, JobState::Computing, JobState::Queued);
+    }
+    if (!move_job(session, job.id, JobState::Computing, JobState::Failed)) {
+        return false;
+    }
+    set_failure(session, job.id,
+                {"crashed", "poison-job",
+                 fmt::format("it was tried {} times; the last time: {}", job.attempt, how)});
     return true;
 }
 

@@ -56,4 +56,10 @@ void remove_job(SqlSession& session, const std::string& id);
 // std::logic_error if the table of states forbids the move.
 bool move_job(SqlSession& session, const std::string& id, JobState from, JobState to);
 
+// Likewise from computing, by who claimed it.
+bool settle_job(SqlSession& session, const JobClaim& job, JobState to);
+
+// From computing: to be tried again, or never more, for what broke several times would break again.
+bool give_back(SqlSession& session, const JobRecord& job, const std::string& how);
+
 }  // namespace leafcutter::server

@@ -41,20 +41,6 @@ void remember_key(SqlSession& session, const IdempotencyKey& key, const std::str
     insert.run();
 }
 
-// Computing again, or never more: what broke several times would break again.
-bool give_back(SqlSession& session, const JobRecord& job, const std::string& how) {
-    if (job.attempt < JobStore::kMostAttempts) {
-        return move_job(session, job.id, JobState::Computing, JobState::Queued);
-    }
-    if (!move_job(session, job.id, JobState::Computing, JobState::Failed)) {
-        return false;
-    }
-    set_failure(session, job.id,
-                {"crashed", "poison-job",
-                 fmt::format("it was tried {} times; the last time: {}", job.attempt, how)});
-    return true;
-}
-
 }  // namespace
 
 AddedJob SqlJobStore::add(const NewJob& job, const std::optional<IdempotencyKey>& key) {
@@ -119,39 +105,45 @@ std::vector<JobRecord> SqlJobStore::list(const JobQuery& wanted) const {
     return jobs;
 }
 
-bool SqlJobStore::finish(const std::string& id, const ComputedJob& result) {
+bool SqlJobStore::finish(const JobClaim& job, const ComputedJob& result) {
     bool moved = false;
-    database_.write([&](SqlSession& session) {
-        moved = move_job(session, id, JobState::Computing, JobState::Ready);
-        if (moved) {
-            store_result(session, id, result);
-        }
-    });
+    database_.write(
+        [&](SqlSession& session) {
+            moved = settle_job(session, job, JobState::Ready);
+            if (moved) {
+                store_result(session, job.id, result);
+            }
+        },
+        WriteOrder::Beside);
     return moved;
 }
 
-bool SqlJobStore::fail(const std::string& id, const JobFailure& failure) {
+bool SqlJobStore::fail(const JobClaim& job, const JobFailure& failure) {
     bool moved = false;
-    database_.write([&](SqlSession& session) {
-        moved = move_job(session, id, JobState::Computing, JobState::Failed);
-        if (moved) {
-            set_failure(session, id, failure);
-        }
-    });
+    database_.write(
+        [&](SqlSession& session) {
+            moved = settle_job(session, job, JobState::Failed);
+            if (moved) {
+                set_failure(session, job.id, failure);
+            }
+        },
+        WriteOrder::Beside);
     return moved;
 }
 
-bool SqlJobStore::requeue(const std::string& id) {
+bool SqlJobStore::requeue(const JobClaim& job) {
     bool moved = false;
-    database_.write([&](SqlSession& session) {
-        moved = move_job(session, id, JobState::Computing, JobState::Queued);
-        // Stopped on purpose: that was no failed attempt.
-        SqlStatement uncount(session, "UPDATE job SET attempt = attempt - 1 WHERE id = ?");
-        uncount.bind(1, id);
-        if (moved) {
-            uncount.run();
-        }
-    });
+    database_.write(
+        [&](SqlSession& session) {
+            moved = settle_job(session, job, JobState::Queued);
+            // Stopped on purpose: that was no failed attempt.
+            SqlStatement uncount(session, "UPDATE job SET attempt = attempt - 1 WHERE id = ?");
+            uncount.bind(1, job.id);
+            if (moved) {
+                uncount.run();
+            }
+        },
+        WriteOrder::Beside);
     return moved;
 }
 
@@ -181,11 +173,12 @@ bool SqlJobStore::rename(const std::string& id, const std::string& name) {
     return renamed;
 }
 
-bool SqlJobStore::crashed(const std::string& id, const std::string& how) {
+bool SqlJobStore::crashed(const JobClaim& claim, const std::string& how) {
     bool moved = false;
     database_.write([&](SqlSession& session) {
-        const auto job = find_job(session, id);
-        moved = job && give_back(session, *job, how);
+        const auto job = find_job(session, claim.id);
+        moved =
+            job && claim.fence.value_or(job->fence) == job->fence && give_back(session, *job, how);
     });
     return moved;
 }
@@ -219,9 +212,11 @@ std::int64_t SqlJobStore::count(JobState state) const {
 }
 
 void SqlJobStore::recover() {
-    database_.write([](SqlSession& session) {
+    database_.write([this](SqlSession& session) {
         std::vector<JobRecord> cut_short;
-        SqlStatement query(session, fmt::format("{} WHERE state = 'computing'", kSelectJob));
+        SqlStatement query(session,
+                           fmt::format("{} WHERE state = 'computing' AND owner = ?", kSelectJob));
+        query.bind(1, scope_.node);
         while (query.step()) {
             cut_short.push_back(job_from(query));
         }

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "server/store/fleet_store.h"
 #include "server/store/job_store.h"
 
 namespace leafcutter::server {
@@ -10,7 +11,8 @@ class SqlDatabase;
 
 class SqlJobStore final : public JobStore {
 public:
-    explicit SqlJobStore(SqlDatabase& database) : database_(database) {}
+    SqlJobStore(SqlDatabase& database, const NodeScope& scope)
+        : database_(database), scope_(scope) {}
 
     AddedJob add(const NewJob& job, const std::optional<IdempotencyKey>& key) override;
     JobRecord add_ready(const NewJob& job,
@@ -28,10 +30,10 @@ public:
     bool move_to(const std::string& id, int position) override;
     bool rename(const std::string& id, const std::string& name) override;
     bool retry(const std::string& id, const std::string& cause) override;
-    bool finish(const std::string& id, const ComputedJob& result) override;
-    bool fail(const std::string& id, const JobFailure& failure) override;
-    bool requeue(const std::string& id) override;
-    bool crashed(const std::string& id, const std::string& how) override;
+    bool finish(const JobClaim& job, const ComputedJob& result) override;
+    bool fail(const JobClaim& job, const JobFailure& failure) override;
+    bool requeue(const JobClaim& job) override;
+    bool crashed(const JobClaim& job, const std::string& how) override;
     bool cancel(const std::string& id) override;
     Removal remove(const std::string& id) override;
     std::vector<ArtifactRecord> artifacts(const std::string& job) const override;
@@ -45,6 +47,7 @@ public:
 
 private:
     SqlDatabase& database_;
+    const NodeScope scope_;
 };
 
 }  // namespace leafcutter::server

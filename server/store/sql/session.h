@@ -56,6 +56,9 @@ public:
     // The newest number ever given to an event; 0: none.
     virtual std::int64_t last_event() = 0;
 
+    // Rows were put in with numbers of their own: the next ones count on from the greatest.
+    virtual void count_on() = 0;
+
     // What makes a SELECT take its row for this transaction and pass by those that others took.
     virtual std::string_view for_update_of_free_rows() const = 0;
 };

@@ -18,17 +18,18 @@ std::int64_t age_of(SqlSession& session, const char* query) {
 
 }  // namespace
 
-SqlTables::SqlTables(SqlDatabase& database)
+SqlTables::SqlTables(SqlDatabase& database, const NodeScope& scope)
     : rows_(database),
-      jobs_(database),
-      cuts_(database),
+      jobs_(database, scope),
+      cuts_(database, scope),
       devices_(database),
       stock_(database),
       materials_(database, "material"),
       presets_(database, "preset"),
       settings_(database),
       events_(database),
-      accounts_(database) {}
+      accounts_(database),
+      fleet_(database, scope) {}
 
 QueueAges SqlTables::queue_ages() const {
     QueueAges ages;

@@ -8,6 +8,7 @@
 #include "server/store/sql/cuts.h"
 #include "server/store/sql/devices.h"
 #include "server/store/sql/events.h"
+#include "server/store/sql/fleet.h"
 #include "server/store/sql/jobs.h"
 #include "server/store/sql/named_records.h"
 #include "server/store/sql/settings.h"
@@ -18,7 +19,7 @@ namespace leafcutter::server {
 class SqlTables : public Engine {
 public:
     // `database` outlives this.
-    explicit SqlTables(SqlDatabase& database);
+    SqlTables(SqlDatabase& database, const NodeScope& scope);
 
     JobStore& jobs() override { return jobs_; }
     CutStore& cuts() override { return cuts_; }
@@ -29,6 +30,7 @@ public:
     Settings& settings() override { return settings_; }
     EventLog& events() override { return events_; }
     AccountStore& accounts() override { return accounts_; }
+    FleetStore& fleet() override { return fleet_; }
     QueueAges queue_ages() const override;
 
 private:
@@ -42,6 +44,7 @@ private:
     SqlSettings settings_;
     SqlEventLog events_;
     SqlAccountStore accounts_;
+    SqlFleetStore fleet_;
 };
 
 }  // namespace leafcutter::server

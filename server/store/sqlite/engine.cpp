@@ -24,11 +24,13 @@ namespace {
 
 class SqliteEngine final : public SqlTables {
 public:
-    explicit SqliteEngine(std::unique_ptr<Database> database)
-        : SqlTables(*database), database_(std::move(database)) {}
+    explicit SqliteEngine(std::unique_ptr<Database> database, const NodeScope& scope = {})
+        : SqlTables(*database, scope), database_(std::move(database)) {}
 
     const LatencyHistogram* commit_latency() const override { return database_->commit_latency(); }
     std::string trouble() const override { return database_->trouble(); }
+    SqlDatabase& rows() override { return *database_; }
+    void pass_on(const std::string& /*text*/) override {}  // There is nobody else.
     std::string check() const override;
     void back_up_to(const fs::path& file) const override;
 
@@ -110,7 +112,8 @@ void keep_before_migration(const fs::path& file, const fs::path& backups) {
 
 OpenedEngine open_sqlite(const fs::path& folder,
                          const fs::path& backups,
-                         std::function<void()> after_commit) {
+                         std::function<void()> after_commit,
+                         const NodeScope& scope) {
     const fs::path file = folder / "leafcutter.db";
     fs::create_directories(backups);
     const Rescue rescue = make_usable(file, backups);
@@ -119,13 +122,13 @@ OpenedEngine open_sqlite(const fs::path& folder,
     opened.restored = rescue.restored;
     if (!rescue.trouble.empty()) {
         opened.engine =
-            std::make_unique<SqliteEngine>(std::make_unique<Database>(file, rescue.trouble));
+            std::make_unique<SqliteEngine>(std::make_unique<Database>(file, rescue.trouble), scope);
         return opened;
     }
     try {
         keep_before_migration(file, backups);
         opened.engine = std::make_unique<SqliteEngine>(
-            std::make_unique<Database>(file, std::move(after_commit)));
+            std::make_unique<Database>(file, std::move(after_commit)), scope);
     } catch (const SQLite::Exception& error) {
         throw DatabaseUnusable(fmt::format("{} can't be opened: {}", file.string(), error.what()));
     }
