@@ -9,13 +9,13 @@
 set -eu
 
 RUN_PACKAGES="libopenmesh1 libcholmod3 libopenblas0-pthread libcpp-httplib0.11 libspdlog1.10 libfmt9
-    libsqlite3-0 libtomlplusplus3 libpolyclipping22 libhpdf-2.3.0 libpng16-16 libssl3 libusb-1.0-0 libsodium23 zlib1g"
+    libsqlite3-0 libpq5 libtomlplusplus3 libpolyclipping22 libhpdf-2.3.0 libpng16-16 libssl3 libusb-1.0-0 libsodium23 zlib1g"
 COMPILE_PACKAGES="g++ cmake ninja-build make pkg-config ccache git ca-certificates
     libopenmesh-dev libeigen3-dev libsuitesparse-dev libopenblas-pthread-dev
     nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev
     libcpp-httplib-dev libssl-dev zlib1g-dev libbrotli-dev
-    libsqlite3-dev libsqlitecpp-dev libsodium-dev libusb-1.0-0-dev libpolyclipping-dev libhpdf-dev libpng-dev"
-TEST_PACKAGES="fakeroot nginx-light openssl libgtest-dev libgmock-dev libbenchmark-dev umockdev libumockdev-dev
+    libsqlite3-dev libpq-dev libsqlitecpp-dev libsodium-dev libusb-1.0-0-dev libpolyclipping-dev libhpdf-dev libpng-dev"
+TEST_PACKAGES="fakeroot nginx-light openssl postgresql-15 libgtest-dev libgmock-dev libbenchmark-dev umockdev libumockdev-dev
     clang clang-format clang-tidy libclang-rt-14-dev
     python3 python3-jsonschema python3-numpy python3-scipy python3-shapely python3-ezdxf poppler-utils chromium"
 

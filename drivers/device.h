@@ -135,10 +135,11 @@ public:
     virtual void set_setting(std::string_view key, double value);
 
     // Every line received, for a console view. Set before the first run_once(); called by its
-    // thread.
+    // thread, and never by the destructor.
     std::function<void(std::string_view line)> on_line;
 
-    // Set by the thread of run_once(), before start(); without one, every line is sent.
+    // Set by the thread of run_once(), before start(); without one, every line is sent. Never asked
+    // by the destructor.
     std::shared_ptr<JobWatch> watch;
 
     // Works for at most `slice`: reads, feeds the stream, polls status. Throws LinkLost once when

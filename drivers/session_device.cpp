@@ -28,6 +28,9 @@ SessionDevice::SessionDevice(std::string uri,
       session_(make_session(clock_())) {}
 
 SessionDevice::~SessionDevice() {
+    // Whoever lets go of a machine is often half taken down itself.
+    on_line = nullptr;
+    watch = nullptr;
     try {
         close();
     } catch (const std::exception&) {

@@ -90,6 +90,9 @@ App::~App() {
     edge_.reset();
     fleet_->stop_all();
     hub_.stop();
+    housekeeper_.reset();  // From here to the webhooks: all that still writes to the store.
+    compute_.reset();
+    audit_.reset();
     std::vector<std::unique_ptr<Webhook>> webhooks;
     const std::scoped_lock lock(webhooks_mutex_);
     webhooks.swap(webhooks_);

@@ -195,7 +195,7 @@ void ComputeRunner::give_back(const JobRecord& job, const std::stop_token& stop)
     constexpr std::chrono::seconds kPause{1};
     while (!stop.stop_requested()) {
         try {
-            store_.jobs.requeue(job.id);
+            store_.jobs.requeue({job.id, job.fence});
             return;
         } catch (const StoreError&) {
             std::unique_lock lock(mutex_);
@@ -229,18 +229,18 @@ void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
                               texts_of(store_.materials.list())},
                              context));
     } catch (const geometry::Cancelled&) {
-        const bool requeued = stop.stop_requested() && store_.jobs.requeue(job.id);
+        const bool requeued = stop.stop_requested() && store_.jobs.requeue({job.id, job.fence});
         spdlog::info("job {}: {}", job.id, requeued ? "back in the queue" : "cancelled");
     } catch (const ComputeCrashed& error) {
         spdlog::warn("job {}: {}", job.id, error.what());
-        store_.jobs.crashed(job.id, error.what());
+        store_.jobs.crashed({job.id, job.fence}, error.what());
     } catch (const StoreError&) {
         throw;  // No fault of the job's: it is still there when the store is back.
     } catch (const std::exception& error) {
         spdlog::info("job {}: failed: {}", job.id, error.what());
-        store_.jobs.fail(job.id, failure_of(error));
+        store_.jobs.fail({job.id, job.fence}, failure_of(error));
     } catch (...) {  // A thread's top: whatever it was, only this job fails.
-        store_.jobs.fail(job.id, {"internal", "internal", "the computation broke down"});
+        store_.jobs.fail({job.id, job.fence}, {"internal", "internal", "the computation broke down"});
     }
 }
 
@@ -253,7 +253,7 @@ std::string ComputeRunner::params_of(const JobRecord& job) const {
 
 void ComputeRunner::finish(const JobRecord& job, const ComputeOutput& output) {
     crash_point("compute.before-result");
-    const bool kept = store_.jobs.finish(job.id, stored_result(store_.blobs, output));
+    const bool kept = store_.jobs.finish({job.id, job.fence}, stored_result(store_.blobs, output));
     spdlog::info("job {}: {}", job.id, kept ? "ready" : "cancelled at the last moment");
 }
 

@@ -61,7 +61,8 @@ public:
     // must be that of the current sheet.
     virtual bool arm(const CutRecord& cut) = 0;
 
-    // Armed -> cutting, with the intent to fire on disk: only after this may the beam come on.
+    // Armed -> cutting, with the intent to fire on disk: only after this may the beam come on. In a
+    // fleet only for who holds the machine's lease; otherwise the cut is disarmed.
     virtual bool begin_sheet(const CutRecord& cut) = 0;
 
     // Cutting or paused -> awaiting the next sheet, or done; the sheet counts as cut, and the job
@@ -86,6 +87,13 @@ public:
     virtual std::optional<CutRecord> last_begun_on(const std::string& device) const = 0;
 
     virtual std::int64_t count(CutState state) const = 0;
+
+    // A cut that this station has in work was called interrupted because the station was out of
+    // reach: it is in work again, unless somebody began something with its rest.
+    virtual bool reclaim(const CutRecord& in_work) = 0;
+
+    // Cutting or paused, begun by this station.
+    virtual std::vector<CutRecord> in_hand() const = 0;
 
     // At start: armed cuts are disarmed, cuts in mid-beam are interrupted. Returns the devices of
     // the latter.

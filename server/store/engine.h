@@ -14,6 +14,7 @@
 #include "server/store/cut_store.h"
 #include "server/store/device_store.h"
 #include "server/store/event_log.h"
+#include "server/store/fleet_store.h"
 #include "server/store/job_store.h"
 #include "server/store/named_records.h"
 #include "server/store/settings.h"
@@ -26,6 +27,8 @@ struct QueueAges {
     std::int64_t oldest_job_ms = 0;  // Since the oldest queued job was accepted; 0: none waits.
     std::int64_t oldest_cut_ms = 0;  // Likewise of waiting cuts.
 };
+
+class SqlDatabase;
 
 class Engine {
 public:
@@ -40,6 +43,13 @@ public:
     virtual Settings& settings() = 0;
     virtual EventLog& events() = 0;
     virtual AccountStore& accounts() = 0;
+    virtual FleetStore& fleet() = 0;
+
+    // The database below, for copying all of it.
+    virtual SqlDatabase& rows() = 0;
+
+    // Tells all processes that share the database something that nobody keeps.
+    virtual void pass_on(const std::string& text) = 0;
 
     virtual QueueAges queue_ages() const = 0;
 

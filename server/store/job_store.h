@@ -51,6 +51,12 @@ struct ComputedJob {
     std::vector<SheetRecord> sheets;
 };
 
+// A job in the hands of somebody who computes it.
+struct JobClaim {
+    std::string id;
+    std::optional<std::int64_t> fence = {};  // As JobRecord::fence says; none: whoever has it.
+};
+
 enum class Removal { Removed, NotThere, StillInUse };
 
 // How many jobs wait, run and gave up.
@@ -109,14 +115,15 @@ public:
     // what has changed since. False if it is in neither state.
     virtual bool retry(const std::string& id, const std::string& cause) = 0;
 
-    // From computing. False: it is no longer computing (cancelled meanwhile), nothing was done.
-    virtual bool finish(const std::string& id, const ComputedJob& result) = 0;
-    virtual bool fail(const std::string& id, const JobFailure& failure) = 0;
-    virtual bool requeue(const std::string& id) = 0;
+    // From computing. False: it is no longer computing (cancelled meanwhile), or somebody else has
+    // claimed it since; nothing was done.
+    virtual bool finish(const JobClaim& job, const ComputedJob& result) = 0;
+    virtual bool fail(const JobClaim& job, const JobFailure& failure) = 0;
+    virtual bool requeue(const JobClaim& job) = 0;
 
     // The computation broke the process that ran it. Back to the queue, or after kMostAttempts
     // failed for good ("poison-job"): a dead letter. False: it is no longer computing.
-    virtual bool crashed(const std::string& id, const std::string& how) = 0;
+    virtual bool crashed(const JobClaim& job, const std::string& how) = 0;
 
     // From queued or computing.
     virtual bool cancel(const std::string& id) = 0;
@@ -136,7 +143,7 @@ public:
 
     virtual std::int64_t count(JobState state) const = 0;
 
-    // At start: what was computing goes back to the queue, or fails after kMostAttempts.
+    // At start: what this node was computing goes back to the queue, or fails after kMostAttempts.
     virtual void recover() = 0;
 };
 

@@ -63,7 +63,10 @@ struct JobRecord {
     std::vector<SheetRecord> sheets;
     std::vector<std::string> cuts;
     bool has_open_cut = false;
-    std::string recut_of;  // The job whose pieces it cuts again; empty: none.
+    std::string recut_of;             // The job whose pieces it cuts again; empty: none.
+    std::string owner;                // The node that computes it, or did last.
+    std::int64_t fence = 0;           // Grows with every claim.
+    std::int64_t lease_until_ms = 0;  // Of the claim; 0: without end.
 };
 
 // How far the beam got in a cut that ended early, in burnt mm of its sheet's program.
@@ -96,6 +99,8 @@ struct CutRecord {
     std::string reason;
     std::int64_t created_ms = 0;
     std::int64_t updated_ms = 0;
+    std::string owner;       // The station that began it last.
+    std::int64_t fence = 0;  // Of the machine's lease under which it did.
 
     int sheet() const { return sheets.at(position); }
     bool on_last_sheet() const { return position + 1 == sheets.size(); }
@@ -127,6 +132,7 @@ struct DeviceRecord {
     std::string uri;
     bool auto_start = false;
     std::array<double, 2> bed_mm{600.0, 400.0};
+    std::string station = {};  // The node on which it hangs; empty: this daemon.
 };
 
 // One line of the append-only log; `seq` is the id that event streams carry.

@@ -182,6 +182,32 @@ TEST(GrblDevice, PassesOnEveryLineItHears) {
     EXPECT_THAT(heard, testing::Contains(HasSubstr("[GC:G0 G54")));
 }
 
+// The owner of both is half destroyed by then: the daemon's heap was once written to from here.
+TEST(GrblDevice, TellsNobodyAnythingWhileItIsTakenDown) {
+    struct Watch final : JobWatch {
+        explicit Watch(int& asked) : asked_(asked) {}
+        std::size_t lines_allowed(const JobProgress&, const DeviceStatus&) override {
+            ++asked_;
+            return 10;
+        }
+        int& asked_;
+    };
+    Bench bench;
+    int heard = 0;
+    int asked = 0;
+    bench.device->on_line = [&heard](std::string_view) { ++heard; };
+    bench.device->watch = std::make_shared<Watch>(asked);
+    bench.device->start(program_of(spiral(200)));
+    while (heard == 0) {
+        bench.device->run_once(milliseconds(5));
+    }
+    heard = 0;
+    asked = 0;
+    bench.device.reset();
+    EXPECT_EQ(heard, 0);
+    EXPECT_EQ(asked, 0);
+}
+
 TEST(OpenDevice, RefusesUrisItCannotRead) {
     for (const char* uri :
          {"", "grbl:", "usb:1", "sim:ruida", "grbl:tcp://host", "grbl:/dev/null?speed=1",

@@ -30,12 +30,14 @@ export function launch() {
   });
 }
 
+const kPatience = 120_000; // Of every wait: the machine may be busy with other things.
 export const kDesktop = { width: 1360, height: 900 };
 export const kPhone = { width: 360, height: 780 };
 
 // A page in a profile of its own. `faults` collects what the console and the network complain of.
 export async function openPage(browser, url, { viewport = kDesktop, colorScheme = 'light', ...more } = {}) {
   const context = await browser.newContext({ viewport, colorScheme, reducedMotion: 'reduce', ...more });
+  context.setDefaultTimeout(kPatience);
   const page = await context.newPage();
   const faults = [];
   page.on('console', (message) => {

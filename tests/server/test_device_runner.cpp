@@ -181,7 +181,7 @@ protected:
             const std::string text = "G1 X" + std::to_string(number) + " Y2 S10\n";
             result.sheets.push_back({number, "paper", blob(text), 1.0, false});
         }
-        EXPECT_TRUE(store->jobs.finish(job.id, result));
+        EXPECT_TRUE(store->jobs.finish({job.id}, result));
         return store->cuts.add(job.id, {{record.id, {}}}).front();
     }
     void arm(const CutRecord& cut) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -13,7 +14,11 @@
 #include <gtest/gtest.h>
 
 #include "server/store/blobs.h"
+#include "server/store/postgres/engine.h"
+#include "server/store/sql/columns.h"
+#include "server/store/sql/copy.h"
 #include "server/store/sqlite/engine.h"
+#include "tests/support/pg_server.h"
 #include "tests/support/temp_dir.h"
 
 namespace leafcutter::server {
@@ -21,7 +26,9 @@ namespace {
 
 struct EngineKind {
     const char* name;
-    std::function<std::unique_ptr<Engine>(const std::filesystem::path& folder)> open;
+    std::function<std::unique_ptr<Engine>(const std::filesystem::path& folder, const NodeScope&)>
+        open;
+    const char* columns_of;  // A query of the names of a table's columns.
 };
 
 class EngineTest : public ::testing::TestWithParam<EngineKind> {
@@ -29,7 +36,7 @@ protected:
     EngineTest() { open(); }
 
     void open() {
-        store = GetParam().open(folder.path());
+        store = GetParam().open(folder.path(), {});
         store->jobs().recover();
         interrupted_devices = store->cuts().recover();
     }
@@ -51,7 +58,7 @@ protected:
             const std::string program = sha256_of(std::to_string(number));
             result.sheets.push_back({number, "paper", program, 1.0, false});
         }
-        EXPECT_TRUE(store->jobs().finish(job.id, result));
+        EXPECT_TRUE(store->jobs().finish({job.id}, result));
         return store->jobs().find(job.id).value();
     }
 
@@ -133,14 +140,14 @@ TEST_P(EngineTest, AResultForACancelledJobIsDropped) {
     const JobRecord job = add();
     store->jobs().claim();
     EXPECT_TRUE(store->jobs().cancel(job.id));
-    EXPECT_FALSE(store->jobs().finish(job.id, {}));
+    EXPECT_FALSE(store->jobs().finish({job.id}, {}));
     EXPECT_EQ(store->jobs().find(job.id)->state, JobState::Cancelled);
 }
 
 TEST_P(EngineTest, EventNumbersHaveNoGapAndEveryChangeHasOne) {
     const JobRecord job = add();
     store->jobs().claim();
-    store->jobs().fail(job.id, {"bad-file", "x", "y"});
+    store->jobs().fail({job.id}, {"bad-file", "x", "y"});
     store->jobs().remove(job.id);
     const auto events = store->events().after(0, 100);
     ASSERT_EQ(events.size(), 4U);
@@ -274,11 +281,11 @@ TEST_P(EngineTest, AJobThatBreaksItsProcessEndsAsADeadLetter) {
     const JobRecord job = add();
     for (int attempt = 1; attempt < JobStore::kMostAttempts; ++attempt) {
         ASSERT_TRUE(store->jobs().claim());
-        EXPECT_TRUE(store->jobs().crashed(job.id, "signal 11"));
+        EXPECT_TRUE(store->jobs().crashed({job.id}, "signal 11"));
         EXPECT_EQ(store->jobs().find(job.id)->state, JobState::Queued);
     }
     ASSERT_TRUE(store->jobs().claim());
-    EXPECT_TRUE(store->jobs().crashed(job.id, "signal 11"));
+    EXPECT_TRUE(store->jobs().crashed({job.id}, "signal 11"));
     const auto dead = store->jobs().find(job.id);
     EXPECT_EQ(dead->state, JobState::Failed);
     EXPECT_EQ(dead->failure->code, "poison-job");
@@ -287,14 +294,14 @@ TEST_P(EngineTest, AJobThatBreaksItsProcessEndsAsADeadLetter) {
     query.dead_letters = true;
     add("healthy");
     ASSERT_EQ(store->jobs().list(query).size(), 1U);
-    EXPECT_FALSE(store->jobs().crashed(job.id, "late"));
+    EXPECT_FALSE(store->jobs().crashed({job.id}, "late"));
 }
 
 TEST_P(EngineTest, ARetryForgetsTheFailureAndKeepsTheCause) {
     const JobRecord job = add();
     EXPECT_FALSE(store->jobs().retry(job.id, "too early"));
     store->jobs().claim();
-    store->jobs().fail(job.id, {"internal", "out-of-memory", "too large"});
+    store->jobs().fail({job.id}, {"internal", "out-of-memory", "too large"});
     EXPECT_TRUE(store->jobs().retry(job.id, "more memory"));
     const auto again = store->jobs().find(job.id);
     EXPECT_EQ(again->state, JobState::Queued);
@@ -324,7 +331,7 @@ TEST_P(EngineTest, ACutSheetTakesItsStockAndLeavesItsOffcut) {
         sheet.offcut_json = number == 1 ? R"({"width_mm":5})" : "";
         result.sheets.push_back(sheet);
     }
-    store->jobs().finish(job.id, result);
+    store->jobs().finish({job.id}, result);
     EXPECT_EQ(store->stock().find("left")->planned, 2);
     CutRecord cut = store->cuts().add(job.id, {{"sim", {1}}}).front();
     cut = armed(cut);
@@ -360,7 +367,7 @@ TEST_P(EngineTest, CutsOfOneRequestAreAddedTogetherOrNotAtAll) {
 TEST_P(EngineTest, OldJobsGoAndThoseWithSomethingLeftToDoStay) {
     const JobRecord failed = add("failed");
     store->jobs().claim();
-    store->jobs().fail(failed.id, {"bad-file", "x", "y"});
+    store->jobs().fail({failed.id}, {"bad-file", "x", "y"});
     const JobRecord waiting = add("waiting");
     constexpr std::int64_t kNow = INT64_MAX;
     EXPECT_EQ(store->jobs().remove_finished(0, 10), 0);
@@ -378,7 +385,7 @@ TEST_P(EngineTest, APackageThatIsLetGoLeavesItsJob) {
     SheetRecord sheet;
     sheet.program_sha256 = sha256_of("abc");
     result.sheets.push_back(sheet);
-    store->jobs().finish(job.id, result);
+    store->jobs().finish({job.id}, result);
     EXPECT_EQ(store->jobs().drop_packages(INT64_MAX, 10), 0);  // It is ready, not cut yet.
     const CutRecord cut = armed(store->cuts().add(job.id, {{"sim", {}}}).front());
     store->cuts().begin_sheet(cut);
@@ -421,19 +428,247 @@ TEST_P(EngineTest, ABackupHoldsWhatWasThereAndWorkGoesOn) {
     store->back_up_to(folder.path() / "copy" / "leafcutter.db");
     add("later");
     EXPECT_TRUE(store->check().empty());
-    const auto copy = GetParam().open(folder.path() / "copy");
+    const auto copy = GetParam().open(folder.path() / "copy", {});
     EXPECT_TRUE(copy->jobs().find(job.id));
     EXPECT_EQ(copy->jobs().queue(10).size(), 1U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Engines,
-                         EngineTest,
-                         ::testing::Values(EngineKind{
-                             "sqlite",
-                             [](const std::filesystem::path& folder) {
-                                 return open_sqlite(folder, folder / "backups", [] {}).engine;
-                             }}),
-                         [](const auto& each) { return each.param.name; });
+TEST_P(EngineTest, NobodyButTheOneWhoClaimedLastSettlesAJob) {
+    add();
+    const JobRecord zombie = store->jobs().claim().value();
+    ASSERT_TRUE(store->jobs().requeue({zombie.id, zombie.fence}));
+    const JobRecord claimed = store->jobs().claim().value();
+    ASSERT_EQ(claimed.id, zombie.id);
+    EXPECT_GT(claimed.fence, zombie.fence);
+    EXPECT_FALSE(store->jobs().finish({zombie.id, zombie.fence}, {}));
+    EXPECT_FALSE(store->jobs().fail({zombie.id, zombie.fence}, {"internal", "x", "y"}));
+    EXPECT_FALSE(store->jobs().crashed({zombie.id, zombie.fence}, "late"));
+    EXPECT_EQ(store->jobs().find(claimed.id)->state, JobState::Computing);
+    ComputedJob result;
+    result.summary_json = "{}";
+    EXPECT_TRUE(store->jobs().finish({claimed.id, claimed.fence}, result));
+}
+
+// Two nodes on the same rows. With the lease of a daemon that stands still, all of them are over.
+class FleetTest : public EngineTest {
+protected:
+    std::unique_ptr<Engine> node(const std::string& name, std::chrono::milliseconds lease) {
+        return GetParam().open(folder.path(), {name, lease});
+    }
+    CutRecord armed_on(Engine& station, const std::string& device) {
+        DeviceRecord record;
+        record.id = device;
+        record.uri = "sim:grbl";
+        record.station = "hall";
+        station.devices().put(record);
+        return armed(store->cuts().add(add_ready(1).id, {{device, {}}}).front());
+    }
+    static constexpr std::chrono::minutes kLong{10};
+    static constexpr std::chrono::milliseconds kOver{1};
+    static void let_leases_end() { std::this_thread::sleep_for(2 * kOver); }
+};
+
+TEST_P(FleetTest, AJobOfAWorkerThatWentAwayIsClaimedByAnother) {
+    const JobRecord job = add();
+    const auto lost = node("lost", kOver);
+    const auto other = node("other", kLong);
+    const JobRecord first = lost->jobs().claim().value();
+    EXPECT_EQ(first.owner, "lost");
+    let_leases_end();
+    EXPECT_EQ(other->fleet().reap().jobs, 1);
+    EXPECT_EQ(lost->fleet().renew({{job.id, first.fence}}), std::vector<std::string>{job.id});
+    const JobRecord second = other->jobs().claim().value();
+    EXPECT_EQ(second.owner, "other");
+    EXPECT_EQ(other->fleet().reap().jobs, 0);
+    EXPECT_FALSE(lost->jobs().finish({job.id, first.fence}, {}));
+    EXPECT_TRUE(other->fleet().renew({{job.id, second.fence}}).empty());
+}
+
+TEST_P(FleetTest, ANodeThatStartsAgainTakesUpItsOwnJobsAlone) {
+    add("a");
+    add("b");
+    const auto one = node("one", kLong);
+    const auto two = node("two", kLong);
+    const JobRecord mine = one->jobs().claim().value();
+    const JobRecord theirs = two->jobs().claim().value();
+    one->jobs().recover();
+    EXPECT_EQ(store->jobs().find(mine.id)->state, JobState::Queued);
+    EXPECT_EQ(store->jobs().find(theirs.id)->state, JobState::Computing);
+}
+
+TEST_P(FleetTest, AMachineHangsOnOneStationAtATime) {
+    const auto hall = node("hall", kLong);
+    const auto copy = node("hall-copy", kLong);
+    armed_on(*hall, "laser");
+    ASSERT_EQ(hall->fleet().hold_machines().size(), 1U);
+    DeviceRecord moved = hall->devices().find("laser").value();
+    moved.station = "hall-copy";
+    copy->devices().put(moved);
+    EXPECT_TRUE(copy->fleet().hold_machines().empty());
+    const std::int64_t fence = hall->fleet().machine_leases().front().fence;
+    hall->fleet().let_go_of_machines();
+    ASSERT_EQ(copy->fleet().hold_machines().size(), 1U);
+    EXPECT_GT(copy->fleet().machine_leases().front().fence, fence);
+}
+
+TEST_P(FleetTest, WithoutItsLeaseAStationBeginsNothing) {
+    const auto hall = node("hall", kOver);
+    const CutRecord cut = armed_on(*hall, "laser");
+    hall->fleet().hold_machines();
+    let_leases_end();
+    EXPECT_FALSE(hall->cuts().begin_sheet(cut));
+    EXPECT_EQ(state_of(cut), CutState::Waiting);
+    EXPECT_NE(store->cuts().find(cut.id)->reason.find("does not hold"), std::string::npos);
+}
+
+TEST_P(FleetTest, APausedStationBeginsNothingAndAPausedWorkerClaimsNothing) {
+    const auto hall = node("hall", kLong);
+    NodeRecord self;
+    self.id = "hall";
+    EXPECT_EQ(hall->fleet().beat(self), NodeMode::Active);
+    const CutRecord cut = armed_on(*hall, "laser");
+    hall->fleet().hold_machines();
+    EXPECT_TRUE(store->fleet().set_mode("hall", NodeMode::Paused));
+    EXPECT_EQ(hall->fleet().beat(self), NodeMode::Paused);
+    EXPECT_FALSE(hall->cuts().begin_sheet(cut));
+    add();
+    EXPECT_FALSE(hall->jobs().claim());
+    EXPECT_FALSE(store->fleet().set_mode("nobody", NodeMode::Paused));
+}
+
+TEST_P(FleetTest, ACutOfALostStationIsInterruptedAndItsOwnAgainWhenItIsBack) {
+    const auto hall = node("hall", std::chrono::milliseconds(300));
+    CutRecord cut = armed_on(*hall, "laser");
+    hall->fleet().hold_machines();
+    ASSERT_TRUE(hall->cuts().begin_sheet(cut));
+    cut = hall->cuts().find(cut.id).value();
+    EXPECT_EQ(cut.owner, "hall");
+    while (store->fleet().machine_leases().front().left_ms > 0) {
+        std::this_thread::yield();
+    }
+    let_leases_end();
+    EXPECT_EQ(store->fleet().reap().cuts, 1);
+    EXPECT_EQ(state_of(cut), CutState::Interrupted);
+    EXPECT_FALSE(store->cuts().finish_sheet(cut, {}));  // Fenced off,
+    EXPECT_FALSE(store->cuts().reclaim(cut));           // by anybody else,
+    EXPECT_TRUE(hall->cuts().reclaim(cut));             // until its holder speaks.
+    EXPECT_FALSE(hall->cuts().begin_sheet(cut));        // Never begun twice.
+    EXPECT_TRUE(hall->cuts().finish_sheet(cut, {}));
+    EXPECT_EQ(state_of(cut), CutState::Done);
+}
+
+TEST_P(FleetTest, ACutWhoseRestWasBegunStaysInterrupted) {
+    const auto hall = node("hall", kOver);
+    CutRecord cut = armed_on(*hall, "laser");
+    const auto long_hall = node("hall", kLong);
+    long_hall->fleet().hold_machines();
+    ASSERT_TRUE(long_hall->cuts().begin_sheet(cut));
+    long_hall->fleet().let_go_of_machines();
+    let_leases_end();
+    ASSERT_EQ(store->fleet().reap().cuts, 1);
+    cut = store->cuts().find(cut.id).value();
+    ASSERT_TRUE(store->cuts().add_rest(cut, sha256_of("rest")));
+    cut.state = CutState::Cutting;
+    EXPECT_FALSE(hall->cuts().reclaim(cut));
+    EXPECT_EQ(state_of(cut), CutState::Interrupted);
+}
+
+std::set<std::string> names_in(const std::string& columns) {
+    std::set<std::string> names;
+    std::istringstream words(columns);
+    for (std::string word; words >> word;) {
+        names.insert(word.substr(0, word.find(':')));
+    }
+    return names;
+}
+
+TEST_P(EngineTest, ACopyKnowsEveryColumn) {
+    for (const SqlTable& table : kSqlTables) {
+        std::set<std::string> there;
+        store->rows().read([&](SqlSession& session) {
+            SqlStatement query(session, GetParam().columns_of);
+            query.bind(1, table.name);
+            while (query.step()) {
+                there.insert(query.column(0).text());
+            }
+        });
+        EXPECT_EQ(there, names_in(std::string(table.columns))) << table.name;
+    }
+}
+
+TEST_P(EngineTest, AllGoesToADaemonAloneAndBackUnchanged) {
+    const JobRecord job = add_ready(2);
+    const JobRecord claimed = add("half computed");
+    store->jobs().claim();
+    const CutRecord cut = store->cuts().add(job.id, {{"sim", {}}}).front();
+    store->presets().put({"p", R"({"a":"\"'?"})"});
+    StockRecord left;
+    left.id = "left";
+    left.json = "{}";
+    store->stock().put(left);
+    store->accounts().put(User{"anna", Role::Admin, "hash", 5});
+    const std::int64_t last = store->events().last_seq();
+
+    const test::TempDir alone;
+    auto sqlite = open_sqlite(alone.path(), alone.path() / "backups", [] {}).engine;
+    const auto copied = copy_all_rows(store->rows(), sqlite->rows());
+    EXPECT_EQ(copied.front().rows, 2);
+    EXPECT_THROW(copy_all_rows(store->rows(), sqlite->rows()), CopyRefused);
+
+    const test::TempDir back_folder;
+    const auto back = GetParam().open(back_folder.path(), {});
+    copy_all_rows(sqlite->rows(), back->rows());
+    EXPECT_EQ(back->jobs().find(job.id)->sheets.size(), 2U);
+    EXPECT_EQ(back->cuts().find(cut.id)->sheets, cut.sheets);
+    EXPECT_EQ(back->presets().find("p")->json, R"({"a":"\"'?"})");
+    EXPECT_FALSE(back->stock().find("left")->quantity);
+    EXPECT_EQ(back->accounts().load().users.front().name, "anna");
+    EXPECT_EQ(back->events().last_seq(), last);
+    back->jobs().add({"next", {"n", 1, sha256_of("n")}, "{}"}, std::nullopt);
+    EXPECT_EQ(back->events().last_seq(), last + 1);
+    EXPECT_GT(back->jobs().list({}).front().ordinal, claimed.ordinal);
+}
+
+const EngineKind kSqlite{"sqlite",
+                         [](const std::filesystem::path& folder, const NodeScope& scope) {
+                             return open_sqlite(
+                                        folder, folder / "backups", [] {}, scope)
+                                 .engine;
+                         },
+                         "SELECT name FROM pragma_table_info(?)"};
+
+// Each folder has tables of its own; a backup that lies in it is brought back.
+std::unique_ptr<Engine> open_in_postgres(const std::filesystem::path& folder,
+                                         const NodeScope& scope) {
+    std::string space = "t" + sha256_of(folder.string()).substr(0, 16);
+    test::PgServer& server = *test::PgServer::shared();
+    server.create_space(space);
+    auto engine = open_postgres(server.uri(space), scope, {}).engine;
+    if (std::filesystem::exists(folder / "leafcutter.db")) {
+        const auto backup = open_sqlite(folder, folder / "backups", [] {}).engine;
+        copy_all_rows(backup->rows(), engine->rows());
+    }
+    return engine;
+}
+
+const EngineKind kPostgres{"postgres", open_in_postgres,
+                           "SELECT column_name::text FROM information_schema.columns WHERE "
+                           "table_name = ? AND table_schema = current_schema()"};
+
+std::vector<EngineKind> kinds() {
+    std::vector<EngineKind> kinds{kSqlite};
+    if (test::PgServer::shared() != nullptr) {
+        kinds.push_back(kPostgres);
+    }
+    return kinds;
+}
+
+std::string name_of(const ::testing::TestParamInfo<EngineKind>& each) {
+    return each.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Engines, EngineTest, ::testing::ValuesIn(kinds()), name_of);
+INSTANTIATE_TEST_SUITE_P(Engines, FleetTest, ::testing::ValuesIn(kinds()), name_of);
 
 }  // namespace
 }  // namespace leafcutter::server

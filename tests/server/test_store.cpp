@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "server/store/sqlite/database.h"
-#include "server/store/sqlite/events.h"
+#include "server/store/sql/events.h"
 #include "server/store/store.h"
 #include "server/store/store_error.h"
 #include "tests/support/temp_dir.h"
@@ -115,13 +115,13 @@ TEST(Database, WorkThatThrowsLeavesNothingBehind) {
     const test::TempDir folder;
     Database database(folder.path() / "a.db", [] {});
     const auto write = [&database] {
-        database.write([](SQLite::Database& connection) {
+        database.write([](SqlSession& connection) {
             append_event(connection, {});
             throw std::runtime_error("no");
         });
     };
     EXPECT_THROW(write(), std::runtime_error);
-    EXPECT_EQ(SqliteEventLog(database).last_seq(), 0);
+    EXPECT_EQ(SqlEventLog(database).last_seq(), 0);
 }
 
 TEST(Blobs, KeepWhatIsFinishedAndNothingElse) {

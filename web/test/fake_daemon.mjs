@@ -219,7 +219,9 @@ export class FakeDaemon {
   }
 
   tick(seconds) {
-    for (const job of this.jobs.values()) if (job.state === 'queued' || job.state === 'computing') this.compute(job, seconds);
+    for (const job of this.jobs.values()) {
+      if (job.state === 'computing' || (job.state === 'queued' && !this.paused)) this.compute(job, seconds);
+    }
     for (const cut of this.cuts.values()) if (cut.state === 'cutting') this.burn(cut, seconds);
   }
 

@@ -7,6 +7,7 @@
 
 #include "server/store/sqlite/errors.h"
 #include "server/store/sqlite/seal.h"
+#include "server/store/sqlite/session.h"
 #include "server/store/store_error.h"
 
 namespace leafcutter::server {
@@ -48,19 +49,24 @@ std::unique_ptr<SQLite::Database> Database::take_reader() const {
     return open_reader(file_);
 }
 
-void Database::write(const std::function<void(SQLite::Database&)>& work) {
+void Database::write(const Work& work, WriteOrder /*order*/) {
     if (!writer_) {
         throw StoreError(StoreTrouble::ReadOnly, trouble_);
     }
     writer_->run(work);
 }
 
-void Database::read(const std::function<void(SQLite::Database&)>& work) const {
+void Database::write_soon(const std::string& /*key*/, const Work& work) {
+    write(work);  // The disk is never far.
+}
+
+void Database::read(const Work& work) const {
     try {
         std::unique_ptr<SQLite::Database> reader = take_reader();
         {
             SQLite::Transaction view(*reader);
-            work(*reader);
+            SqliteSession session(*reader);
+            work(session);
         }
         const std::scoped_lock lock(mutex_);
         idle_readers_.push_back(std::move(reader));

@@ -10,11 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "server/store/sql/session.h"
 #include "server/store/sqlite/writer.h"
 
 namespace leafcutter::server {
 
-class Database {
+class Database final : public SqlDatabase {
 public:
     // For reading and writing: `after_commit` is called by the writer's thread and must not wait.
     Database(std::filesystem::path file, std::function<void()> after_commit);
@@ -22,16 +23,14 @@ public:
     // For reading alone, because of `trouble`.
     Database(std::filesystem::path file, std::string trouble);
 
-    ~Database();
+    ~Database() override;
     Database(const Database&) = delete;
     Database& operator=(const Database&) = delete;
 
-    // Returns when `work` is on disk; throws what it threw, with nothing of it done. Throws
-    // StoreError.
-    void write(const std::function<void(SQLite::Database&)>& work);
-
-    // Runs `work` on a read-only connection, in one consistent view. Throws StoreError.
-    void read(const std::function<void(SQLite::Database&)>& work) const;
+    using SqlDatabase::write;
+    void write(const Work& work, WriteOrder order) override;
+    void write_soon(const std::string& key, const Work& work) override;
+    void read(const Work& work) const override;
 
     // Why nothing is written any more; empty: it is.
     std::string trouble() const;

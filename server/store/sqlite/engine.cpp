@@ -1,6 +1,5 @@
 #include "server/store/sqlite/engine.h"
 
-#include <algorithm>
 #include <sqlite3.h>
 #include <utility>
 
@@ -10,19 +9,12 @@
 #include "server/crash_point.h"
 #include "server/store/durable_file.h"
 #include "server/store/ids.h"
-#include "server/store/sqlite/accounts.h"
-#include "server/store/sqlite/cuts.h"
+#include "server/store/sql/tables.h"
 #include "server/store/sqlite/database.h"
-#include "server/store/sqlite/devices.h"
 #include "server/store/sqlite/errors.h"
-#include "server/store/sqlite/events.h"
-#include "server/store/sqlite/jobs.h"
-#include "server/store/sqlite/named_records.h"
 #include "server/store/sqlite/rescue.h"
 #include "server/store/sqlite/schema.h"
 #include "server/store/sqlite/seal.h"
-#include "server/store/sqlite/settings.h"
-#include "server/store/sqlite/stock.h"
 #include "server/store/store_error.h"
 
 namespace leafcutter::server {
@@ -31,64 +23,21 @@ namespace fs = std::filesystem;
 
 namespace {
 
-class SqliteEngine final : public Engine {
+class SqliteEngine final : public SqlTables {
 public:
-    explicit SqliteEngine(std::unique_ptr<Database> database)
-        : database_(std::move(database)),
-          jobs_(*database_),
-          cuts_(*database_),
-          devices_(*database_),
-          stock_(*database_),
-          materials_(*database_, "material"),
-          presets_(*database_, "preset"),
-          settings_(*database_),
-          events_(*database_),
-          accounts_(*database_) {}
+    explicit SqliteEngine(std::unique_ptr<Database> database, const NodeScope& scope = {})
+        : SqlTables(*database, scope), database_(std::move(database)) {}
 
-    JobStore& jobs() override { return jobs_; }
-    CutStore& cuts() override { return cuts_; }
-    DeviceStore& devices() override { return devices_; }
-    StockStore& stock() override { return stock_; }
-    NamedRecords& materials() override { return materials_; }
-    NamedRecords& presets() override { return presets_; }
-    Settings& settings() override { return settings_; }
-    EventLog& events() override { return events_; }
-    AccountStore& accounts() override { return accounts_; }
-    QueueAges queue_ages() const override;
     const LatencyHistogram* commit_latency() const override { return database_->commit_latency(); }
-
     std::string trouble() const override { return database_->trouble(); }
+    SqlDatabase& rows() override { return *database_; }
+    void pass_on(const std::string& /*text*/) override {}  // There is nobody else.
     std::string check() const override;
     void back_up_to(const fs::path& file) const override;
 
 private:
     std::unique_ptr<Database> database_;
-    SqliteJobStore jobs_;
-    SqliteCutStore cuts_;
-    SqliteDeviceStore devices_;
-    SqliteStockStore stock_;
-    SqliteNamedRecords materials_;
-    SqliteNamedRecords presets_;
-    SqliteSettings settings_;
-    SqliteEventLog events_;
-    SqliteAccountStore accounts_;
 };
-
-std::int64_t age_of(SQLite::Database& database, const char* query) {
-    const SQLite::Column oldest = database.execAndGet(query);
-    return oldest.isNull() ? 0 : std::max<std::int64_t>(0, wall_clock_ms() - oldest.getInt64());
-}
-
-QueueAges SqliteEngine::queue_ages() const {
-    QueueAges ages;
-    database_->read([&ages](SQLite::Database& reader) {
-        ages.oldest_job_ms =
-            age_of(reader, "SELECT min(created_ms) FROM job WHERE state = 'queued'");
-        ages.oldest_cut_ms =
-            age_of(reader, "SELECT min(created_ms) FROM cut WHERE state = 'waiting'");
-    });
-    return ages;
-}
 
 std::string SqliteEngine::check() const {
     std::string damage;
@@ -165,7 +114,8 @@ void keep_before_migration(const fs::path& file, const fs::path& backups) {
 
 OpenedEngine open_sqlite(const fs::path& folder,
                          const fs::path& backups,
-                         std::function<void()> after_commit) {
+                         std::function<void()> after_commit,
+                         const NodeScope& scope) {
     const fs::path file = folder / "leafcutter.db";
     fs::create_directories(backups);
     const Rescue rescue = make_usable(file, backups);
@@ -174,13 +124,13 @@ OpenedEngine open_sqlite(const fs::path& folder,
     opened.restored = rescue.restored;
     if (!rescue.trouble.empty()) {
         opened.engine =
-            std::make_unique<SqliteEngine>(std::make_unique<Database>(file, rescue.trouble));
+            std::make_unique<SqliteEngine>(std::make_unique<Database>(file, rescue.trouble), scope);
         return opened;
     }
     try {
         keep_before_migration(file, backups);
         opened.engine = std::make_unique<SqliteEngine>(
-            std::make_unique<Database>(file, std::move(after_commit)));
+            std::make_unique<Database>(file, std::move(after_commit)), scope);
     } catch (const SQLite::Exception& error) {
         throw DatabaseUnusable(fmt::format("{} can't be opened: {}", file.string(), error.what()));
     }

@@ -16,6 +16,7 @@ namespace leafcutter::server {
 // must not wait. Throws DatabaseUnusable.
 OpenedEngine open_sqlite(const std::filesystem::path& folder,
                          const std::filesystem::path& backups,
-                         std::function<void()> after_commit);
+                         std::function<void()> after_commit,
+                         const NodeScope& scope = {});
 
 }  // namespace leafcutter::server

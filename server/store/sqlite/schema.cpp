@@ -160,8 +160,33 @@ CREATE TABLE preset(
 CREATE TABLE setting(
     key TEXT PRIMARY KEY,
     value TEXT NOT NULL) WITHOUT ROWID;
-)sql",
-    kAccountSchema};
+)sql", kAccountSchema,
+    R"sql(
+-- Who has a job or a machine, for a fleet: a daemon alone leaves them empty. See fleet_store.h.
+ALTER TABLE job ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN fence INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN lease_until_ms INTEGER NOT NULL DEFAULT 0;
+CREATE INDEX job_lease ON job(lease_until_ms) WHERE state = 'computing';
+ALTER TABLE cut ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+ALTER TABLE cut ADD COLUMN fence INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE device ADD COLUMN station TEXT NOT NULL DEFAULT '';
+
+CREATE TABLE machine_lease(
+    device TEXT PRIMARY KEY,
+    owner TEXT NOT NULL,
+    fence INTEGER NOT NULL,
+    lease_until_ms INTEGER NOT NULL) WITHOUT ROWID;
+
+CREATE TABLE node(
+    id TEXT PRIMARY KEY,
+    role TEXT NOT NULL,
+    url TEXT NOT NULL,
+    version TEXT NOT NULL,
+    mode TEXT NOT NULL,
+    facts TEXT NOT NULL DEFAULT '{}',
+    started_ms INTEGER NOT NULL,
+    seen_ms INTEGER NOT NULL) WITHOUT ROWID;
+)sql"};
 
 // Durability first: FULL syncs every commit, and only the writer's own checkpoints touch the file.
 constexpr const char* kPragmas = R"sql(

@@ -1,6 +1,5 @@
 #include "server/store/sqlite/writer.h"
 
-#include <chrono>
 #include <sqlite3.h>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "server/store/sqlite/errors.h"
 #include "server/store/sqlite/rescue.h"
 #include "server/store/sqlite/schema.h"
+#include "server/store/sqlite/session.h"
 #include "server/store/store_error.h"
 
 namespace leafcutter::server {
@@ -21,12 +21,6 @@ constexpr int kPatienceMs = 5000;
 
 }  // namespace
 
-struct Writer::Request {
-    const std::function<void(SQLite::Database&)>* work = nullptr;
-    std::exception_ptr error;
-    bool done = false;
-};
-
 Writer::Writer(const std::filesystem::path& file, std::function<void()> after_commit)
     : file_(file),
       database_(std::make_unique<SQLite::Database>(
@@ -34,43 +28,27 @@ Writer::Writer(const std::filesystem::path& file, std::function<void()> after_co
       after_commit_(std::move(after_commit)) {
     prepare_connection(*database_);
     migrate(*database_);
-    thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
+    queue_ = std::make_unique<CommitQueue>(
+        [this](const CommitQueue::Group& group) { commit(group); }, [this] { after_group(); });
 }
 
 Writer::~Writer() {
-    thread_.request_stop();
-    thread_.join();
+    queue_.reset();
     if (trouble_.empty()) {
         sqlite3_wal_checkpoint_v2(database_->getHandle(), nullptr, SQLITE_CHECKPOINT_TRUNCATE,
                                   nullptr, nullptr);
     }
 }
 
-void Writer::run(const std::function<void(SQLite::Database&)>& work) {
-    Request request;
-    request.work = &work;
-    wait_until_done(request);
-    if (!request.error) {
-        return;
+void Writer::run(const SqlDatabase::Work& work) {
+    if (const std::string why = trouble(); !why.empty()) {
+        throw StoreError(StoreTrouble::ReadOnly, why);
     }
     try {
-        std::rethrow_exception(request.error);
+        queue_->run(work, WriteOrder::Alone);
     } catch (const SQLite::Exception& error) {
         throw store_error_of(error);
     }
-}
-
-void Writer::wait_until_done(Request& request) {
-    std::unique_lock lock(mutex_);
-    if (closed_) {
-        throw StoreError(StoreTrouble::Failed, "the store is closed");
-    }
-    if (!trouble_.empty()) {
-        throw StoreError(StoreTrouble::ReadOnly, trouble_);
-    }
-    waiting_.push_back(&request);
-    arrived_.notify_one();
-    finished_.wait(lock, [&request] { return request.done; });
 }
 
 std::string Writer::trouble() const {
@@ -86,43 +64,21 @@ void Writer::give_up(const std::string& what) {
     }
 }
 
-void Writer::loop(const std::stop_token& stop) {
-    std::vector<Request*> group;
-    while (true) {
-        {
-            std::unique_lock lock(mutex_);
-            arrived_.wait(lock, stop, [this] { return !waiting_.empty(); });
-            if (waiting_.empty()) {
-                closed_ = true;
-                return;
-            }
-            group.swap(waiting_);
-        }
-        const auto begin = std::chrono::steady_clock::now();
-        commit_group(group);
-        commit_latency_.add(std::chrono::steady_clock::now() - begin);
-        {
-            const std::scoped_lock lock(mutex_);
-            for (Request* request : group) {
-                request->done = true;
-            }
-        }
-        finished_.notify_all();
-        group.clear();
-        if (after_commit_) {
-            after_commit_();
-        }
-        checkpoint_if_due();
+void Writer::after_group() {
+    if (after_commit_) {
+        after_commit_();
     }
+    checkpoint_if_due();
 }
 
-void Writer::commit_group(const std::vector<Request*>& group) {
+void Writer::commit(const CommitQueue::Group& group) {
     try {
         database_->exec("BEGIN IMMEDIATE");
-        for (Request* request : group) {
+        SqliteSession session(*database_);
+        for (CommitQueue::Request* request : group) {
             database_->exec("SAVEPOINT request");
             try {
-                (*request->work)(*database_);
+                (*request->work)(session);
             } catch (...) {  // Travels to whoever asked; the others of the group go on.
                 request->error = std::current_exception();
                 database_->exec("ROLLBACK TO request");
@@ -140,7 +96,7 @@ void Writer::commit_group(const std::vector<Request*>& group) {
             give_up(fmt::format("the database takes nothing more since the disk failed: {}",
                                 error.what()));
         }
-        for (Request* request : group) {
+        for (CommitQueue::Request* request : group) {
             request->error = thrown;
         }
     }

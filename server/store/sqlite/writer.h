@@ -3,19 +3,14 @@
 
 #pragma once
 
-#include <condition_variable>
-#include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <stop_token>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "server/latency_histogram.h"
+#include "server/store/sql/commit_queue.h"
 
 namespace SQLite {  // NOLINT(readability-identifier-naming): theirs
 class Database;
@@ -34,37 +29,29 @@ public:
 
     // Runs `work` inside a transaction and returns when it is on disk. Work that throws is rolled
     // back alone, and what it threw is thrown here; SQLite's errors as StoreError.
-    void run(const std::function<void(SQLite::Database&)>& work);
+    void run(const SqlDatabase::Work& work);
 
     // Not empty after the disk failed a commit, or after give_up(): nothing more is written.
     std::string trouble() const;
     void give_up(const std::string& what);
 
     // Of every group's commit, sync included.
-    const LatencyHistogram& commit_latency() const { return commit_latency_; }
+    const LatencyHistogram& commit_latency() const { return queue_->latency(); }
 
 private:
-    struct Request;
-
-    void loop(const std::stop_token& stop);
-    void commit_group(const std::vector<Request*>& group);
+    void commit(const CommitQueue::Group& group);
+    void after_group();
     void checkpoint_if_due();
-    void wait_until_done(Request& request);
 
     const std::filesystem::path file_;
-    std::unique_ptr<SQLite::Database> database_;  // Of the thread alone, once it runs.
+    std::unique_ptr<SQLite::Database> database_;  // Of the queue's thread alone, once it runs.
     std::function<void()> after_commit_;
     int groups_since_checkpoint_ = 0;
-    LatencyHistogram commit_latency_;
 
-    mutable std::mutex mutex_;  // Guards the members below.
-    std::condition_variable_any arrived_;
-    std::condition_variable finished_;
-    std::vector<Request*> waiting_;
+    mutable std::mutex mutex_;  // Guards trouble_.
     std::string trouble_;
-    bool closed_ = false;
 
-    std::jthread thread_;  // Last: it uses everything above.
+    std::unique_ptr<CommitQueue> queue_;  // Last: its thread uses everything above.
 };
 
 }  // namespace leafcutter::server

@@ -1,0 +1,43 @@
+#include "server/store/sql/settings.h"
+
+#include "server/store/sql/session.h"
+#include "server/store/sql/setting_rows.h"
+
+namespace leafcutter::server {
+
+std::optional<std::string> setting(SqlSession& session, const std::string& key) {
+    SqlStatement query(session, "SELECT value FROM setting WHERE key = ?");
+    query.bind(1, key);
+    return query.step() ? std::optional(query.column(0).text()) : std::nullopt;
+}
+
+void set_setting(SqlSession& session, const std::string& key, const std::string& value) {
+    SqlStatement upsert(session,
+                        "INSERT INTO setting(key, value) VALUES(?, ?) "
+                        "ON CONFLICT(key) DO UPDATE SET value = excluded.value");
+    upsert.bind(1, key);
+    upsert.bind(2, value);
+    upsert.run();
+}
+
+void forget_setting(SqlSession& session, const std::string& key) {
+    SqlStatement erase(session, "DELETE FROM setting WHERE key = ?");
+    erase.bind(1, key);
+    erase.run();
+}
+
+std::optional<std::string> SqlSettings::get(const std::string& key) const {
+    std::optional<std::string> value;
+    database_.read([&](SqlSession& session) { value = setting(session, key); });
+    return value;
+}
+
+void SqlSettings::put(const std::string& key, const std::string& json) {
+    database_.write([&](SqlSession& session) { set_setting(session, key, json); });
+}
+
+void SqlSettings::remove(const std::string& key) {
+    database_.write([&](SqlSession& session) { forget_setting(session, key); });
+}
+
+}  // namespace leafcutter::server
