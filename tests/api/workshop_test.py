@@ -25,6 +25,7 @@ class TestCards(CutsOf):
         self.fire(path)
         self.reaches(path, "done", seconds=25)
         self.assertEqual(self.get(f"/jobs/{job['id']}")["state"], "done")
+        self.wait(machine.path, lambda device: device["cut"] is None)
         self.assertEqual(self.ask("DELETE", machine.path)[0], 204)  # Its log is whole then.
         return segments(machine)
 
