@@ -85,6 +85,9 @@ class World:
             time.sleep(0.02)
         raise AssertionError(f"{path} stays {thing}")
 
+    def computed(self, job):
+        return self.wait(f"/jobs/{job}", lambda job: job["state"] not in ("queued", "computing"))
+
     def log(self):
         return self.state / "burns" / f"run-{self.runs}.jsonl"
 
@@ -105,7 +108,10 @@ class World:
             assert status == 201, job
             assert self.acknowledged.setdefault(name, job["id"]) == job["id"], "accepted twice"
         for name, job in self.acknowledged.items():
-            ready = self.wait(f"/jobs/{job}", lambda job: job["state"] not in ("queued", "computing"))
+            ready = self.computed(job)
+            if ready["dead_letter"]:  # Three daemons died while it was computed: somebody says it was not the job.
+                self.ask("POST", f"/jobs/{job}/retry", {"cause": "the daemon was killed"})
+                ready = self.computed(job)
             assert ready["state"] in ("ready", "done"), ready["error"]
             if not ready["cuts"]:
                 status, cut = self.ask("POST", f"/jobs/{job}/cuts", {"device": "laser"})
