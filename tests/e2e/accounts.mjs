@@ -147,6 +147,36 @@ step('sheets come into stock, are drawn, and go', async () => {
   await confirmRemoval(card.getByRole('button', { name: /remove/i }), card);
 });
 
+step('a remnant is drawn by hand and changed later', async () => {
+  const { page } = desk;
+  await page.getByRole('button', { name: 'Add sheets' }).click();
+  await page.getByRole('button', { name: 'Drawn' }).click();
+  await page.getByRole('button', { name: 'Add a corner after corner 2' }).press('Enter');
+  const corner = page.getByRole('button', { name: /^Corner 3:/ });
+  for (let press = 0; press < 15; press += 1) await corner.press('Shift+ArrowLeft');
+  await page.getByRole('button', { name: 'Corner 3: 450, 200 mm' }).waitFor();
+  const box = await page.getByRole('button', { name: /^Corner 1:/ }).boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 40, box.y + box.height / 2, { steps: 4 });
+  await page.mouse.up();
+  await page.getByRole('button', { name: /^Corner 1: [1-9]\d+, 0 mm/ }).waitFor();
+  assert.deepEqual(await axeFaults(page), []);
+  await picture(page, 'outline-light');
+  await page.getByRole('button', { name: 'Save' }).click();
+  const card = page.locator('.stock-card', { hasText: 'remnant' });
+  await card.waitFor();
+  const { stock } = await (await fetch(`${target.url}/api/v1/stock`, { headers: withKey() })).json();
+  const [{ outline }] = stock.filter((item) => item.kind === 'remnant');
+  assert.equal(outline.length, 5);
+  assert.deepEqual(outline[2], [450, 200]);
+  await card.getByRole('button', { name: 'Change' }).click();
+  await page.getByRole('button', { name: 'Rectangle' }).click();
+  await page.getByRole('button', { name: 'Save' }).click();
+  await card.waitFor({ state: 'detached' });
+  await page.locator('.stock-card', { hasText: '600 × 400 mm' }).waitFor();
+});
+
 step('a paused queue keeps what comes, in an order one may change', async () => {
   const { page } = desk;
   await page.goto(`${wire.url}/#/queue`);
