@@ -126,6 +126,7 @@ EventSource App::event_source() {
     source.passing = [this](const std::string& type, const std::string& id) {
         return passing_event(*this, type, id);
     };
+    source.may_listen = [this](const Caller& caller) { return accounts_->still_admits(caller); };
     source.snapshot = [this](std::int64_t seq, const std::optional<std::string>& job) {
         return snapshot_event(*this, seq, job);
     };

@@ -45,6 +45,11 @@ struct AppParts {
 
     // Within seconds. Throws geometry::Error.
     std::function<ComputeOutput(const RecutCall&)> recut;
+
+    // At once. Throws geometry::Error.
+    std::function<ComputeOutput(const std::string& wish_json,
+                                const std::vector<std::string>& material_records)>
+        test_card;
 };
 
 class App {

@@ -21,6 +21,10 @@ int run(int argc, char** argv) {
     add_compute_command(app, common);
     add_serve_command(app, common);
     add_user_command(app, common);
+    add_health_command(app, common);
+    add_backup_command(app, common);
+    add_stock_command(app, common);
+    add_presets_command(app, common);
     add_submit_command(app, common);
     add_jobs_command(app, common);
     add_cuts_command(app, common);
@@ -32,6 +36,7 @@ int run(int argc, char** argv) {
     add_nest_command(app, common);
     add_materials_command(app, common);
     add_recut_command(app, common);
+    add_test_card_command(app, common);
 
     try {
         app.parse(argc, argv);

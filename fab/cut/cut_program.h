@@ -34,6 +34,7 @@ struct CutPath {
         {};                              // The beam begins here and runs straight to the path.
     double over_cut_mm = 0.0;            // How much of a closed path is run again at its end.
     std::vector<DarkStretch> tabs = {};  // Bridges that hold the piece; in order, apart.
+    std::optional<LaserSettings> settings = {};  // Instead of the program's for its operation.
 };
 
 // What became of the wishes for a sheet.

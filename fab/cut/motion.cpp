@@ -18,12 +18,12 @@ public:
         : program_(program), machine_(machine) {}
 
     void add(const CutPath& path) {
-        const LaserSettings& settings = settings_of(program_, path.operation);
+        const LaserSettings& settings = settings_of(program_, path);
         const bool closed = path.points.front() == path.points.back();
         const std::vector<Polyline> runs = burnt_runs(path);
-        go_to(path.lead_in.value_or(path.points.front()), path.operation);
+        go_to(path.lead_in.value_or(path.points.front()));
         if (path.lead_in) {
-            burn({*path.lead_in, path.points.front()}, settings, path.operation);
+            burn({*path.lead_in, path.points.front()}, settings);
         }
         for (int pass = 0; pass < std::max(1, settings.passes); ++pass) {
             const bool backward = !closed && pass % 2 == 1;
@@ -32,18 +32,18 @@ public:
                 if (backward) {
                     std::reverse(run.begin(), run.end());
                 }
-                go_to(run.front(), path.operation);
-                burn(run, settings, path.operation);
+                go_to(run.front());
+                burn(run, settings);
             }
         }
         if (closed && path.over_cut_mm > 0.0) {
-            burn(stretch(path.points, 0.0, path.over_cut_mm), settings, path.operation);
+            burn(stretch(path.points, 0.0, path.over_cut_mm), settings);
         }
     }
 
-    void go_to(const Eigen::Vector2d& to, Operation operation) {
+    void go_to(const Eigen::Vector2d& to) {
         if ((to - at_).norm() > kNoMoveMm) {
-            moves_.push_back({to, machine_.rapid_mm_per_min, false, operation});
+            moves_.push_back({to, machine_.rapid_mm_per_min, 0.0, false});
             at_ = to;
         }
     }
@@ -51,9 +51,9 @@ public:
     std::vector<Motion> take() { return std::move(moves_); }
 
 private:
-    void burn(const Polyline& run, const LaserSettings& settings, Operation operation) {
+    void burn(const Polyline& run, const LaserSettings& settings) {
         for (std::size_t i = 1; i < run.size(); ++i) {
-            moves_.push_back({run[i], settings.feed_mm_per_min, true, operation});
+            moves_.push_back({run[i], settings.feed_mm_per_min, settings.power_percent, true});
         }
         at_ = run.back();
     }
@@ -66,8 +66,11 @@ private:
 
 }  // namespace
 
-const LaserSettings& settings_of(const CutProgram& program, Operation operation) {
-    switch (operation) {
+const LaserSettings& settings_of(const CutProgram& program, const CutPath& path) {
+    if (path.settings) {
+        return *path.settings;
+    }
+    switch (path.operation) {
         case Operation::Engrave:
             return program.engrave;
         case Operation::Score:
@@ -85,7 +88,7 @@ std::vector<Motion> motions(const CutProgram& program, const MachineProfile& mac
             list.add(path);
         }
     }
-    list.go_to(Eigen::Vector2d::Zero(), Operation::Cut);
+    list.go_to(Eigen::Vector2d::Zero());
     return list.take();
 }
 

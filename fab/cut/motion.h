@@ -14,11 +14,11 @@ namespace leafcutter::fab {
 struct Motion {
     Eigen::Vector2d to;
     double feed_mm_per_min = 0.0;
+    double power_percent = 0.0;
     bool burns = false;  // False: a rapid with the beam off.
-    Operation operation = Operation::Engrave;
 };
 
-const LaserSettings& settings_of(const CutProgram& program, Operation operation);
+const LaserSettings& settings_of(const CutProgram& program, const CutPath& path);
 
 // From the origin through all paths and back to the origin. A pass over an open path runs against
 // the one before it; a closed path goes round again. A lead-in is burnt before the first pass, an

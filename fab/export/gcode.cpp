@@ -65,7 +65,7 @@ std::string clock_text(double seconds) {
 
 void check_settings(const CutProgram& program) {
     for (const CutPath& path : program.paths) {
-        if (!(settings_of(program, path.operation).feed_mm_per_min > 0.0)) {
+        if (!(settings_of(program, path).feed_mm_per_min > 0.0)) {
             static constexpr const char* kNames[] = {"engrave", "score", "cut"};
             throw geometry::Error(
                 geometry::ErrorKind::BadOption, "no-feed",
@@ -90,8 +90,7 @@ std::string header(const CutProgram& program) {
 // none.
 class MotionWriter {
 public:
-    MotionWriter(const CutProgram& program, double full_power_s, std::string& out)
-        : program_(program), full_power_s_(full_power_s), out_(out) {}
+    MotionWriter(double full_power_s, std::string& out) : full_power_s_(full_power_s), out_(out) {}
 
     void write(const Motion& motion) {
         std::string place =
@@ -110,8 +109,7 @@ public:
 
 private:
     void write_burn(const Motion& motion, const std::string& place) {
-        const LaserSettings& settings = settings_of(program_, motion.operation);
-        const double power = settings.power_percent / 100.0 * full_power_s_;
+        const double power = motion.power_percent / 100.0 * full_power_s_;
         fmt::format_to(std::back_inserter(out_), "G1 {}", place);
         if (power_ != power) {
             fmt::format_to(std::back_inserter(out_), " S{}", short_number(power));
@@ -124,7 +122,6 @@ private:
         out_ += '\n';
     }
 
-    const CutProgram& program_;
     const double full_power_s_;
     std::string& out_;
     std::string place_ = "X0 Y0";
@@ -144,7 +141,7 @@ std::string write_gcode(const CutProgram& program, const MachineProfile& machine
     std::string out = header(program);
     out += "G21\nG90\nG0 X0 Y0 S0\n";
     out += laser_on(dialect);
-    MotionWriter writer(program, full_power(machine, dialect), out);
+    MotionWriter writer(full_power(machine, dialect), out);
     for (const Motion& motion : motions(program, machine)) {
         writer.write(motion);
     }

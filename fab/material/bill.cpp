@@ -64,7 +64,7 @@ void add_program(const CutProgram& program, BillLine& line) {
         for (std::size_t i = 1; i < path.points.size(); ++i) {
             length += (path.points[i] - path.points[i - 1]).norm();
         }
-        length *= std::max(1, settings_of(program, path.operation).passes);
+        length *= std::max(1, settings_of(program, path).passes);
         switch (path.operation) {
             case Operation::Engrave:
                 line.engrave_mm += length;

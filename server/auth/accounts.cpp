@@ -43,6 +43,10 @@ const std::string& hash_of_nobody() {
     return hash;
 }
 
+bool is_over(const ApiKey& key, std::int64_t now_ms) {
+    return key.expires_ms > 0 && now_ms > key.expires_ms;
+}
+
 bool is_over(const Session& session, std::int64_t now_ms) {
     return now_ms - session.created_ms > Accounts::kSessionMs ||
            now_ms - session.used_ms > Accounts::kIdleMs;
@@ -86,12 +90,12 @@ Caller Accounts::by_key(std::string_view text) {
     }
     const auto owner = users_.find(key->second.user);
     const std::int64_t now = wall_clock_ms();
-    if (owner == users_.end() || (key->second.expires_ms > 0 && now > key->second.expires_ms)) {
+    if (owner == users_.end() || is_over(key->second, now)) {
         return {};
     }
     key->second.used_ms = now;
     return {Caller::Proof::Key, owner->first, std::min(key->second.role, owner->second.role),
-            key->second.may_fire};
+            key->second.may_fire, id};
 }
 
 Caller Accounts::by_session(std::string_view token) {
@@ -107,7 +111,27 @@ Caller Accounts::by_session(std::string_view token) {
         return {};
     }
     session->second.used_ms = now;
-    return {Caller::Proof::Session, owner->first, owner->second.role, true};
+    return {Caller::Proof::Session, owner->first, owner->second.role, true, hash};
+}
+
+bool Accounts::still_admits(const Caller& caller) const {
+    const std::int64_t now = wall_clock_ms();
+    const std::scoped_lock lock(mutex_);
+    switch (caller.proof) {
+        case Caller::Proof::None:
+            return false;
+        case Caller::Proof::NoAccounts:
+            return users_.empty();
+        case Caller::Proof::Key: {
+            const auto key = keys_.find(caller.credential);
+            return key != keys_.end() && !is_over(key->second, now);
+        }
+        case Caller::Proof::Session: {
+            const auto session = sessions_.find(caller.credential);
+            return session != sessions_.end() && !is_over(session->second, now);
+        }
+    }
+    return false;
 }
 
 bool Accounts::is_password_of(const std::string& name, std::string_view password) const {

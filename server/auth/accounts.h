@@ -60,6 +60,9 @@ public:
     Caller by_key(std::string_view key);
     Caller by_session(std::string_view token);
 
+    // What the caller came with still opens the door: not revoked, not over. No use of it.
+    bool still_admits(const Caller& caller) const;
+
     // Takes a good part of 0.1 s, whether there is such a user or not.
     bool is_password_of(const std::string& user, std::string_view password) const;
     NewSecret begin_session(const std::string& user);

@@ -22,7 +22,8 @@ struct Caller {
     Proof proof = Proof::None;
     std::string name;  // The user's; empty for nobody, and while there are no accounts.
     Role role = Role::Nobody;
-    bool may_fire = false;  // May do what can turn the beam on, with the role for it.
+    bool may_fire = false;        // May do what can turn the beam on, with the role for it.
+    std::string credential = {};  // A key's id, or a session's hash.
 };
 
 }  // namespace leafcutter::server

@@ -104,8 +104,11 @@ void add_api_options(CLI::App& command, ApiOptions& options) {
 }
 
 ApiClient::ApiClient(ApiOptions options) : options_(std::move(options)) {
-    client_ = std::make_unique<httplib::Client>(options_.url);
-    if (!client_->is_valid()) {
+    const bool is_web = options_.url.starts_with("http://") || options_.url.starts_with("https://");
+    if (is_web) {
+        client_ = std::make_unique<httplib::Client>(options_.url);
+    }
+    if (!client_ || !client_->is_valid()) {
         throw UsageError(options_.url + ": is no URL of a daemon; write http://127.0.0.1:8080");
     }
     client_->set_read_timeout(std::chrono::seconds(60));
@@ -118,6 +121,14 @@ ApiClient::~ApiClient() = default;
 
 json ApiClient::get(const std::string& path) {
     return answer_of(client_->Get(kRoot + path), options_.url);
+}
+
+json ApiClient::readiness() {
+    httplib::Result result = client_->Get(std::string(kRoot) + "/readyz");
+    if (result && result->status == 503) {
+        result->status = 200;  // Not ready is an answer too.
+    }
+    return answer_of(result, options_.url);
 }
 
 json ApiClient::post(const std::string& path, const json& body) {

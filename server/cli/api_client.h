@@ -40,6 +40,9 @@ public:
 
     // Paths below /api/v1. What is answered, null for nothing.
     nlohmann::json get(const std::string& path);
+
+    // What /readyz answers, whether it is ready or not.
+    nlohmann::json readiness();
     nlohmann::json post(const std::string& path, const nlohmann::json& body);
     nlohmann::json post(const std::string& path,
                         const nlohmann::json& body,

@@ -101,10 +101,10 @@ void add_verbs(CLI::App& cuts, const Options& options, const CommonOptions& comm
         add_verb(cuts, options, common, {"start", "Let the beam loose on the cut's current sheet"},
                  [options, &common](ApiClient& client) {
                      const json cut = started(client, *options);
-                     return options->wait ? follow_cut(client, options->id, common) : cut;
+                     return options->wait ? follow_sheet(client, options->id, common) : cut;
                  });
     start->add_flag("--bed-clear", options->bed_clear, "You looked: only the sheet is on the bed");
-    start->add_flag("--wait", options->wait, "Follow it");
+    start->add_flag("--wait", options->wait, "Follow it until the sheet is cut");
     for (const char* word : {"pause", "resume", "abort"}) {
         add_verb(cuts, options, common, {word, "Tell the machine that cuts it"},
                  [options, word](ApiClient& client) {

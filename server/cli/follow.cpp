@@ -75,15 +75,28 @@ json follow_job(ApiClient& client, const std::string& id, const CommonOptions& c
     return follow(client, "job", id, common, std::pair(over, stage));
 }
 
+namespace {
+
+std::string cut_stage(const json& cut) {
+    return fmt::format("sheet {} {}", cut.at("sheet").get<int>(),
+                       cut.at("state").get<std::string>());
+}
+
+bool is_cut_over(const json& cut) {
+    return is_one_of(cut.at("state"), {"done", "aborted", "failed", "interrupted"});
+}
+
+}  // namespace
+
 json follow_cut(ApiClient& client, const std::string& id, const CommonOptions& common) {
+    return follow(client, "cut", id, common, std::pair(&is_cut_over, &cut_stage));
+}
+
+json follow_sheet(ApiClient& client, const std::string& id, const CommonOptions& common) {
     const auto over = [](const json& cut) {
-        return is_one_of(cut.at("state"), {"done", "aborted", "failed", "interrupted"});
+        return is_cut_over(cut) || cut.at("state") == "awaiting-sheet";
     };
-    const auto stage = [](const json& cut) {
-        return fmt::format("sheet {} {}", cut.at("sheet").get<int>(),
-                           cut.at("state").get<std::string>());
-    };
-    return follow(client, "cut", id, common, std::pair(over, stage));
+    return follow(client, "cut", id, common, std::pair(over, &cut_stage));
 }
 
 }  // namespace leafcutter::server

@@ -15,4 +15,7 @@ namespace leafcutter::server {
 nlohmann::json follow_job(ApiClient& client, const std::string& id, const CommonOptions& common);
 nlohmann::json follow_cut(ApiClient& client, const std::string& id, const CommonOptions& common);
 
+// Until the cut's current sheet is over.
+nlohmann::json follow_sheet(ApiClient& client, const std::string& id, const CommonOptions& common);
+
 }  // namespace leafcutter::server

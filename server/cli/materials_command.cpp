@@ -1,4 +1,5 @@
-// `leafcutter materials [--materials FILE] [--json]`: the materials that jobs can name.
+// `leafcutter materials [--materials FILE] [--json]`: the materials that jobs can name;
+// `leafcutter materials list|export|import`: the daemon's.
 
 #include <algorithm>
 #include <cstdio>
@@ -11,6 +12,7 @@
 
 #include "server/cli/command.h"
 #include "server/cli/material_options.h"
+#include "server/cli/shelf_commands.h"
 #include "server/material_json.h"
 
 namespace leafcutter::server {
@@ -54,7 +56,12 @@ void add_materials_command(CLI::App& app, const CommonOptions& common) {
     CLI::App* command = app.add_subcommand("materials", "The materials that jobs can name");
     const auto file = std::make_shared<std::string>();  // Lives as long as the callback.
     command->add_option("--materials", *file, "A JSON file with materials of your own");
-    command->callback([file, &common] {
+    command->require_subcommand(0, 1);
+    add_shelf_verbs(*command, "materials", common);
+    command->callback([command, file, &common] {
+        if (!command->get_subcommands().empty()) {
+            return;  // About the daemon's.
+        }
         const std::vector<fab::Material> materials = wanted_materials(*file);
         if (common.json) {
             fmt::print("{}", materials_to_text(materials));

@@ -22,6 +22,7 @@
 #include "server/log_format.h"
 #include "server/queue/compute_child.h"
 #include "server/recut_compute.h"
+#include "server/test_card.h"
 #include "server/weave_compute.h"
 
 namespace leafcutter::server {
@@ -89,6 +90,7 @@ void serve(const ServeOptions& options) {
     parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
     parts.check_params = check_job_params;
     parts.recut = recut_job_pieces;
+    parts.test_card = make_test_card;
     const std::unique_ptr<App> app = started(config, std::move(parts));
     const bool v6 = config.listen.address.find(':') != std::string::npos;
     const std::string address = v6 ? "[" + config.listen.address + "]" : config.listen.address;

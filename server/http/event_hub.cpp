@@ -20,6 +20,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kHeartbeat = 15s;
 constexpr auto kPassingGap = 100ms;
+constexpr auto kDismissalGap = 500ms;
 constexpr std::size_t kSlack = 65536;
 
 void watch(int epoll, int fd, int how, std::uint32_t events) {
@@ -139,6 +140,7 @@ void EventHub::round() {
             drop(fd);
         }
     }
+    dismiss();
     tell_stored();
     welcome_new();
     tell_passing();
@@ -246,6 +248,24 @@ void EventHub::beat() {
         if (now >= client.heartbeat) {
             append(client, ": still here\n\n");
         }
+    }
+}
+
+// Whose key was revoked, or whose session is over, hears nothing more.
+void EventHub::dismiss() {
+    const Clock::time_point now = Clock::now();
+    if (now < next_dismissal_) {
+        return;
+    }
+    next_dismissal_ = now + kDismissalGap;
+    std::vector<int> dismissed;
+    for (const auto& [fd, client] : clients_) {
+        if (!source_.may_listen(client.subscription.caller)) {
+            dismissed.push_back(fd);
+        }
+    }
+    for (const int fd : dismissed) {
+        drop(fd);
     }
 }
 

@@ -41,6 +41,7 @@ struct EventSource {
     std::function<std::optional<PassingEvent>(const std::string& type, const std::string& id)>
         passing;
     std::function<std::string(std::int64_t seq, const std::optional<std::string>& job)> snapshot;
+    std::function<bool(const Caller& caller)> may_listen;
 };
 
 class EventHub {
@@ -84,6 +85,7 @@ private:
     void tell_stored();
     void tell_passing();
     void beat();
+    void dismiss();
     void rouse();
     void append(Client& client, std::string_view text);
     bool flush(int fd, Client& client);
@@ -99,6 +101,7 @@ private:
     std::unordered_map<int, Client> clients_;
     std::int64_t told_ = 0;  // The last event that went to every client.
     Clock::time_point next_passing_{};
+    Clock::time_point next_dismissal_{};
 
     mutable std::mutex mutex_;  // Guards the members below.
     std::vector<std::pair<int, EventSubscription>> newcomers_;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "server/auth/role.h"
 #include "server/store/blobs.h"
 
 namespace leafcutter::server {
@@ -23,6 +24,7 @@ struct FilePart {
 struct EventSubscription {
     std::optional<std::string> job;         // Events of this job only.
     std::optional<std::int64_t> last_seen;  // Replay what came after it.
+    Caller caller;                          // The stream ends when the daemon would refuse it.
 };
 
 struct Response {

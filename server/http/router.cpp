@@ -26,6 +26,7 @@ constexpr Route kRoutes[] = {
     {"POST", "/api/v1/jobs/{id}/retry", retry_job, Role::Submitter},
     {"POST", "/api/v1/jobs/{id}/recompute", recompute_job, Role::Submitter},
     {"POST", "/api/v1/jobs/{id}/recut", recut_job, Role::Submitter},
+    {"POST", "/api/v1/test-cards", create_test_card, Role::Submitter},
     {"GET", "/api/v1/jobs/{id}/artifacts", list_artifacts, Role::Viewer},
     {"GET", "/api/v1/jobs/{id}/artifacts/{path...}", show_artifact, Role::Viewer},
     {"GET", "/api/v1/jobs/{id}/package.zip", show_package, Role::Viewer},

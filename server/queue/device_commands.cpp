@@ -157,10 +157,17 @@ void DeviceRunner::frame() {
         if (!program.empty()) {
             const std::scoped_lock lock(mutex_);
             frame_program_ = std::move(program);
+            framed_ = cut.program_sha256;
+            queue_changed_ = true;  // The cut's steps show it.
             return;
         }
     }
     throw drivers::Refused("there is no sheet to frame: put a cut in this machine's queue first");
+}
+
+bool DeviceRunner::has_framed(const std::string& program_sha256) const {
+    const std::scoped_lock lock(mutex_);
+    return framed_ == program_sha256;
 }
 
 std::shared_ptr<drivers::Device> DeviceRunner::device() const {

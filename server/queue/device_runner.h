@@ -100,6 +100,9 @@ public:
     // Traces the bounding box of the next cut's sheet with the beam off. Throws drivers::Refused.
     void frame();
 
+    // The last sheet traced on this machine since the daemon began was of that program.
+    bool has_framed(const std::string& program_sha256) const;
+
 private:
     using Clock = std::chrono::steady_clock;
 
@@ -149,6 +152,7 @@ private:
     bool may_connect_ = true;
     bool plugged_in_ = false;
     std::optional<std::string> frame_program_;
+    std::string framed_;   // The program that frame_program_, or the last one, was made of.
     std::string message_;  // Why there is no link.
     std::deque<std::string> lines_;
 

@@ -50,7 +50,7 @@ std::string Store::back_up(std::size_t kept) const {
     engine_->back_up_to(backups() / name);
     const std::vector<std::filesystem::path> all = backups_in(backups());
     for (std::size_t i = kept; i < all.size(); ++i) {
-        std::filesystem::remove(all[i]);
+        remove_backup(all[i]);
     }
     return name;
 }

@@ -174,6 +174,46 @@ class Roles(WithAccounts):
         self.assertEqual(self.as_role("admin", "DELETE", "/api/v1/keys/" + made["id"])[0], 204)
         self.assertEqual(self.daemon.exchange("GET", "/api/v1/jobs", None, bearer)[0], 401)
 
+    def listen(self, headers):
+        connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=10)
+        connection.request("GET", "/api/v1/events", headers=headers)
+        answer = connection.getresponse()
+        self.assertEqual(answer.status, 200)
+        while not answer.readline().startswith(b"event: snapshot"):
+            pass
+        return connection, answer
+
+    def goes_on(self, answer):
+        """Whether the stream says something that happens after this call."""
+        self.as_role("operator", "POST", "/api/v1/queue/pause", '{"reason": "listen"}', **AS_JSON)
+        self.as_role("operator", "POST", "/api/v1/queue/resume", "{}", **AS_JSON)
+        while line := answer.readline():
+            if line.startswith(b"event: queue"):
+                return True
+        return False
+
+    def test_live_events_end_with_the_key_or_session_that_opened_them(self):
+        made = json.loads(self.as_role("admin", "POST", "/api/v1/keys", '{"label": "ends", "role": "viewer"}',
+                                       **AS_JSON)[1])
+        key_link, by_key = self.listen({"Authorization": "Bearer " + made["key"]})
+        _, headers, answer = self.log_in("viewer")
+        cookie = {"Cookie": headers["Set-Cookie"].split(";")[0]}
+        session_link, by_session = self.listen(cookie)
+        other_link, other = self.listen({"Authorization": f"Bearer {self.keys['operator']}"})
+        self.assertTrue(self.goes_on(by_key) and self.goes_on(by_session) and self.goes_on(other))
+        self.as_role("admin", "DELETE", "/api/v1/keys/" + made["id"])
+        self.daemon.exchange("DELETE", "/api/v1/session", None,
+                             {**cookie, "X-CSRF-Token": json.loads(answer)["csrf_token"]})
+        for stream in (by_key, by_session):
+            try:
+                while stream.readline():  # A timeout is an error.
+                    pass
+            except (http.client.IncompleteRead, ConnectionError):
+                pass
+        self.assertTrue(self.goes_on(other))
+        for link in (key_link, session_link, other_link):
+            link.close()
+
     def test_a_key_in_the_address_is_no_key(self):
         self.assertEqual(self.daemon.call("GET", f"/api/v1/jobs?key={self.keys['admin']}")[0], 401)
 

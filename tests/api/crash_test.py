@@ -21,7 +21,8 @@ from daemon import Daemon, free_port
 
 POINTS = ["commit.before", "commit.after", "blob.before-rename", "blob.after-rename",
           "compute.before-result", "begin-sheet.before-intent", "backup.before-rename",
-          "backup.after-rename", "migrate.before-commit", "migrate.after-commit"]
+          "backup.after-rename", "migrate.before-commit", "migrate.after-commit",
+          "seal.before-rename", "seal.after-rename"]
 SHORT = [("commit.before", 9), ("commit.after", 14), ("blob.after-rename", 3),
          ("compute.before-result", 1), ("begin-sheet.before-intent", 1), ("backup.before-rename", 1),
          ("migrate.before-commit", 3), ("migrate.after-commit", 2)]

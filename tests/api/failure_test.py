@@ -2,6 +2,7 @@
 """The store's rows of the failure matrix: disk full, foreign locks, damage, jumping clocks, two
 daemons, uploads that break off, and jobs that break their process.
 Usage: failure_test.py LEAFCUTTER"""
+import collections
 import hashlib
 import json
 import os
@@ -19,6 +20,7 @@ import daemon
 from crash_test import World
 from cuts_test import PARAMS, PLATE
 from daemon import Daemon, free_port
+from finish_test import Laser
 
 SHA = hashlib.sha256(PLATE).hexdigest()
 FLIPS = int(os.environ.get("LEAFCUTTER_FLIPS", "8"))
@@ -94,34 +96,53 @@ class FailureTest(unittest.TestCase):
         self.assertTrue(self.world.start())
         job = self.ended(self.submit("kept"))
         self.assertEqual(self.world.ask("POST", "/backups", {})[0], 201)
+        right = self.world.ask("GET", "/jobs/" + job["id"])[1]
         self.world.daemon.stop()
         whole = Path(self.folder.name) / "whole"
         shutil.copytree(self.world.state, whole)
         chance = random.Random(1)
+        ends = collections.Counter()
         for number in range(FLIPS):
             shutil.rmtree(self.world.state)
             shutil.copytree(whole, self.world.state)
-            if number % 2:
+            backups = ("whole", "none", "rotten")[number % 3]
+            if backups == "none":
                 shutil.rmtree(self.world.state / "backups")
-            base = self.world.state / "leafcutter.db"
-            data = bytearray(base.read_bytes())
-            for _ in range(chance.choice((1, 20, 400))):
-                data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
-            base.write_bytes(data)
+            elif backups == "rotten":
+                for each in (self.world.state / "backups").glob("*.db"):
+                    self.rot(each, 1, chance)
+            self.rot(self.world.state / "leafcutter.db", chance.choice((1, 20, 400)), chance)
             if not self.world.start():
-                # Without a backup, and with accounts that can't be read, nobody may be let in.
-                self.assertEqual(number % 2, 1, f"flips {number}")
+                # With accounts that can't be read nobody may be let in.
+                self.assertNotEqual(backups, "whole", f"flips {number}")
+                ends["refused to start"] += 1
                 continue
             ready = self.world.ask("GET", "/readyz")[1]
             status, shown = self.world.ask("GET", "/jobs/" + job["id"])
-            self.assertIn(status, (200, 404, 500, 503))
-            if number % 2 == 0:
+            if backups == "whole":
                 self.assertFalse(ready["read_only"], ready)
-            if ready["read_only"]:
+                self.assertEqual((status, shown), (200, right), f"flips {number}")
+                self.assertEqual(len(list(self.world.state.glob("*.corrupt-*"))), 1)
+                ends["restored, and right"] += 1
+            else:
+                self.assertIn(status, (200, 404, 500, 503))
+                self.assertTrue(ready["read_only"], ready)
                 self.assertNotEqual(ready["trouble"], "")
                 self.assertEqual(self.world.ask("POST", "/queue/pause", {})[0], 503)
+                ends["read only, and said so"] += 1
             self.world.daemon.kill()
         self.world.daemon = None
+        print(f"{FLIPS} damaged databases: {dict(ends)}")
+
+    def rot(self, file, flips, chance):
+        """Bits that turn as a disk turns them: nobody wrote the file."""
+        left = file.stat()
+        data = bytearray(file.read_bytes())
+        places = chance.sample(range(len(data) * 8), flips)
+        for place in places:
+            data[place // 8] ^= 1 << place % 8
+        file.write_bytes(data)
+        os.utime(file, ns=(left.st_atime_ns, left.st_mtime_ns))
 
     def test_two_daemons_on_one_folder_or_port(self):
         self.assertTrue(self.world.start())
@@ -135,6 +156,29 @@ class FailureTest(unittest.TestCase):
             self.assertLess(time.monotonic() - begun, 15)
             self.assertNotEqual(second.stderr.strip(), "")
         self.assertEqual(self.world.ask("GET", "/healthz")[0], 200)
+
+    def test_two_daemons_on_one_machine(self):
+        laser = Laser(Path(self.folder.name), 4)
+        self.addCleanup(laser.stop)
+        machine = {"name": "laser", "uri": laser.uri}
+        self.assertTrue(self.world.start())
+        self.world.ask("PUT", "/devices/laser", machine)
+        self.world.wait("/devices/laser", lambda device: device["status"]["state"] == "idle")
+        other = World(Path(self.folder.name) / "other")
+        other.state.parent.mkdir()
+        self.addCleanup(other.end)
+        self.assertTrue(other.start())
+        other.ask("PUT", "/devices/laser", machine)
+        refused = other.wait("/devices/laser", lambda device: device["status"]["message"] != "")
+        self.assertEqual(refused["status"]["state"], "disconnected")
+        self.assertIn("close that one first", refused["status"]["message"])
+        mine = self.world.ask("GET", "/devices/laser")[1]["status"]
+        self.assertEqual(mine["state"], "idle")
+        # It is free when the first one is gone, and then one daemon has it again.
+        self.world.daemon.stop()
+        self.world.daemon = None
+        other.ask("POST", "/devices/laser/commands", {"command": "reset"})
+        other.wait("/devices/laser", lambda device: device["status"]["state"] == "idle")
 
     def test_an_upload_that_breaks_off_leaves_nothing(self):
         self.assertTrue(self.world.start())

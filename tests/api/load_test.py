@@ -3,6 +3,7 @@
 load_test.py LEAFCUTTER
 LEAFCUTTER_LOAD=full: 1,000 event streams and 500 slow clients; a tenth of that if not given."""
 import http.client
+import json
 import os
 import resource
 import selectors
@@ -13,6 +14,7 @@ import time
 import unittest
 
 from daemon import Daemon, form, free_port
+from stop_probe import StopProbe
 
 FULL = os.environ.get("LEAFCUTTER_LOAD") == "full"
 STREAMS, SLOW, CALLS = (1000, 500, 2000) if FULL else (100, 50, 300)
@@ -61,8 +63,12 @@ class Load(unittest.TestCase):
     def test_ordinary_calls_and_a_stop_under_load(self):
         hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
         resource.setrlimit(resource.RLIMIT_NOFILE, (min(8192, hard), hard))
+        probe = StopProbe()
+        self.addCleanup(probe.stop)
         with tempfile.TemporaryDirectory() as folder:
             daemon = Daemon(folder, free_port())
+            wire = json.dumps({"name": "wire", "uri": probe.uri})
+            self.assertEqual(daemon.call("PUT", "/api/v1/devices/wire", wire, AS_JSON)[0], 201)
             idle = self.timed(daemon, CALLS // 2)
             streams = Streams(daemon.port, STREAMS)
             slow = []
@@ -76,13 +82,14 @@ class Load(unittest.TestCase):
             before = daemon.rss_mb()
             calls = self.timed(daemon, CALLS)
             stops = self.timed(daemon, CALLS // 4, "POST", "/api/v1/devices/sim/commands", '{"command": "stop"}')
+            wires = probe.press(daemon.port, CALLS // 20)
             after = daemon.rss_mb()
             clients = daemon.call("GET", "/metrics")[1].decode()
             streams.close()
             for client in slow:
                 client.close()
             self.assertEqual(daemon.stop(), 0)
-        for name, times in (("idle", idle), ("calls", calls), ("stops", stops)):
+        for name, times in (("idle", idle), ("calls", calls), ("stops", stops), ("stop to the wire", wires)):
             print(f"{name}: p50 {1e3 * percentile(times, 0.5):.1f} ms, p99 {1e3 * percentile(times, 0.99):.1f} ms, "
                   f"longest {1e3 * max(times):.1f} ms of {len(times)}")
         print(f"{STREAMS} streams, {SLOW} slow clients; {streams.received >> 10} kB of events; "
@@ -92,6 +99,45 @@ class Load(unittest.TestCase):
         self.assertGreater(streams.received, STREAMS * 1000)
         self.assertLess(after - before, 60)
         self.assertLess(max(stops), 5)
+        self.assertLess(max(wires), 5)
+
+    def test_memory_stays_flat_over_an_hour_of_events(self):
+        """Ten events a second for an hour, as fast as they go; a daemon that keeps them grows by as much."""
+        events = 36000 if FULL else 1500
+        with tempfile.TemporaryDirectory() as folder:
+            daemon = Daemon(folder, free_port())
+            streams = Streams(daemon.port, 20)
+            self.stir(daemon, events // 5)
+            before = daemon.rss_mb()
+            begun = time.monotonic()
+            self.stir(daemon, events)
+            took = time.monotonic() - begun
+            after = daemon.rss_mb()
+            metrics = daemon.call("GET", "/metrics")[1].decode()
+            seq = next(line for line in metrics.splitlines() if line.startswith("leafcutter_event_seq "))
+            streams.close()
+            self.assertEqual(daemon.stop(), 0)
+        print(f"{events} events to 20 streams in {took:.0f} s: memory {before:.1f} -> {after:.1f} MB; "
+              f"{streams.received >> 20} MB were told")
+        self.assertGreaterEqual(int(seq.split()[1]), events)
+        self.assertGreater(streams.received, 20 * events * 100)
+        self.assertEqual(streams.lost, 0)
+        self.assertLess(after - before, 10)
+
+    def stir(self, daemon, count):
+        """So many changes of the queue, each with its event."""
+        def change(calls):
+            connection = http.client.HTTPConnection("127.0.0.1", daemon.port, timeout=20)
+            for number in range(calls):
+                word = "pause" if number % 2 == 0 else "resume"
+                connection.request("POST", f"/api/v1/queue/{word}", "{}", AS_JSON)
+                connection.getresponse().read()
+            connection.close()
+        threads = [threading.Thread(target=change, args=(count // 4 + 1,)) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
 
     def timed(self, daemon, count, method="GET", path="/api/v1/jobs?limit=10", body=None):
         connection = http.client.HTTPConnection("127.0.0.1", daemon.port, timeout=20)

@@ -17,6 +17,7 @@ Response stream(App& app, const Request& request, std::optional<std::string> job
     }
     EventSubscription subscription;
     subscription.job = std::move(job);
+    subscription.caller = request.caller;
     if (const auto last = request.header("last-event-id")) {
         std::int64_t seq = 0;
         const char* end = last->data() + last->size();

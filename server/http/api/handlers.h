@@ -27,6 +27,9 @@ Response retry_job(App& app, Request& request);
 // recut.cpp
 Response recut_job(App& app, Request& request);
 
+// test_cards.cpp
+Response create_test_card(App& app, Request& request);
+
 // artifacts.cpp
 Response list_artifacts(App& app, Request& request);
 Response show_artifact(App& app, Request& request);

@@ -6,6 +6,8 @@
 
 #include "server/http/multipart.h"
 #include "server/http/request.h"
+#include "server/http/response.h"
+#include "server/queue/compute_runner.h"
 #include "server/store/job_store.h"
 
 namespace leafcutter::server {
@@ -21,5 +23,12 @@ SourceFile store_mesh(App& app, MultipartReader& parts, const PartHead& head);
 // Checks the parameters, puts the job into the queue, heeds the request's Idempotency-Key. Throws
 // geometry::Error, KeyReused.
 AddedJob take_job(App& app, const Request& request, NewJob job);
+
+// A job that is computed already; `recut_of` as JobStore::add_ready takes it. Throws HttpProblem
+// (507), BlobWriteFailed.
+Response take_ready_job(App& app,
+                        NewJob job,
+                        const std::string& recut_of,
+                        const ComputeOutput& output);
 
 }  // namespace leafcutter::server

@@ -118,6 +118,23 @@ AddedJob take_job(App& app, const Request& request, NewJob job) {
     return added;
 }
 
+Response take_ready_job(App& app,
+                        NewJob job,
+                        const std::string& recut_of,
+                        const ComputeOutput& output) {
+    std::int64_t bytes = 0;
+    for (const fab::PackageFile& file : output.package.files) {
+        bytes += static_cast<std::int64_t>(file.bytes.size());
+    }
+    check_room(app, bytes);
+    job.name.resize(std::min(job.name.size(), kLongestName));
+    const JobRecord made =
+        app.store().jobs.add_ready(job, recut_of, stored_result(app.store().blobs, output));
+    Response response = json_response(job_json(app, made), 201);
+    response.headers["Location"] = "/api/v1/jobs/" + made.id;
+    return response;
+}
+
 Response create_job(App& app, Request& request) {
     const std::string type = request.header("content-type").value_or("");
     const bool is_form = type.starts_with("multipart/form-data");
@@ -167,6 +184,9 @@ Response delete_job(App& app, Request& request) {
 
 Response recompute_job(App& app, Request& request) {
     const JobRecord old = find_job(app, request);
+    if (is_test_card(old)) {
+        throw HttpProblem(409, "no-mesh", "a test card has no mesh: make a new one");
+    }
     const json body = read_json_object(request);
     const auto params = body.find("params");
     NewJob job;

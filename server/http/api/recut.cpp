@@ -9,8 +9,8 @@
 
 #include "server/app.h"
 #include "server/http/api/handlers.h"
+#include "server/http/api/job_intake.h"
 #include "server/http/api/lookup.h"
-#include "server/http/api/views.h"
 #include "server/http/json_body.h"
 #include "server/http/problem.h"
 
@@ -22,7 +22,6 @@ using nlohmann::json;
 
 // "eight.off: W12.1, W13 …"
 std::string name_of(const JobRecord& job, const json& body) {
-    constexpr std::size_t kLongest = 200;
     constexpr std::size_t kMostNamed = 3;
     std::string name;
     if (const auto given = body.find("name"); given != body.end()) {
@@ -40,7 +39,6 @@ std::string name_of(const JobRecord& job, const json& body) {
         }
         name += pieces->size() > kMostNamed ? " …" : "";
     }
-    name.resize(std::min(name.size(), kLongest));
     return name;
 }
 
@@ -66,19 +64,7 @@ Response recut_job(App& app, Request& request) {
     call.material_records = texts_of(app.store().materials.list());
     call.read = [&app, &job](const std::string& path) { return artifact_text(app, job.id, path); };
     const ComputeOutput output = app.parts().recut(call);
-    std::int64_t bytes = 0;
-    for (const fab::PackageFile& file : output.package.files) {
-        bytes += static_cast<std::int64_t>(file.bytes.size());
-    }
-    if (!app.store().blobs.has_room_for(bytes)) {
-        throw HttpProblem(507, "disk", "there is no room for these files");
-    }
-    const NewJob fresh{name_of(job, body), job.file, job.params_json};
-    const JobRecord made =
-        app.store().jobs.add_ready(fresh, job.id, stored_result(app.store().blobs, output));
-    Response response = json_response(job_json(app, made), 201);
-    response.headers["Location"] = "/api/v1/jobs/" + made.id;
-    return response;
+    return take_ready_job(app, {name_of(job, body), job.file, job.params_json}, job.id, output);
 }
 
 }  // namespace leafcutter::server

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/app.h"
+#include "server/http/api/cut_steps.h"
 #include "server/http/json_body.h"
 #include "server/store/ids.h"
 
@@ -16,7 +17,8 @@ using nlohmann::json;
 
 // What the store holds was written by us, but a page must not fail on it.
 json stored_json(const std::string& text) {
-    return json::parse(text, nullptr, /*allow_exceptions=*/false);
+    json parsed = json::parse(text, nullptr, /*allow_exceptions=*/false);
+    return parsed.is_discarded() ? json::object() : parsed;
 }
 
 std::vector<std::string> job_actions(const JobRecord& job) {
@@ -27,9 +29,13 @@ std::vector<std::string> job_actions(const JobRecord& job) {
     std::vector<std::string> actions;
     if (job.state == JobState::Ready || job.state == JobState::Done) {
         actions.emplace_back("cut");
-        actions.emplace_back("recut");
     }
-    actions.emplace_back("recompute");
+    if (!is_test_card(job)) {
+        if (!actions.empty()) {
+            actions.emplace_back("recut");
+        }
+        actions.emplace_back("recompute");
+    }
     if (job.state == JobState::Failed || job.state == JobState::Cancelled) {
         actions.emplace_back("retry");
     }
@@ -147,6 +153,10 @@ void add_subject(App& app, const EventRecord& event, json& data) {
 
 }  // namespace
 
+bool is_test_card(const JobRecord& job) {
+    return job.summary_json && stored_json(*job.summary_json).count("test") != 0;
+}
+
 json job_json(App& app, const JobRecord& job) {
     json error;
     if (job.failure) {
@@ -216,6 +226,7 @@ json cut_json(App& app, const CutRecord& cut) {
             {"reason", cut.reason},
             {"created_at", rfc3339(cut.created_ms)},
             {"updated_at", rfc3339(cut.updated_ms)},
+            {"steps", cut_steps(app, cut)},
             {"actions", cut_actions(app, cut)}};
 }
 

@@ -22,6 +22,9 @@ class App;
 nlohmann::json queue_json(App& app);
 
 nlohmann::json job_json(App& app, const JobRecord& job);
+// A job that has no mesh, and no pieces.
+bool is_test_card(const JobRecord& job);
+
 nlohmann::json cut_json(App& app, const CutRecord& cut);
 nlohmann::json device_json(const DeviceRunner& runner);
 

@@ -6,6 +6,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "server/store/sqlite/errors.h"
+#include "server/store/sqlite/seal.h"
 #include "server/store/sqlite/session.h"
 #include "server/store/store_error.h"
 
@@ -17,7 +18,14 @@ Database::Database(std::filesystem::path file, std::function<void()> after_commi
 Database::Database(std::filesystem::path file, std::string trouble)
     : file_(std::move(file)), trouble_(std::move(trouble)) {}
 
-Database::~Database() = default;
+Database::~Database() {
+    const bool is_whole = writer_ && writer_->trouble().empty();
+    idle_readers_.clear();
+    writer_.reset();
+    if (is_whole) {
+        put_seal(file_);
+    }
+}
 
 std::unique_ptr<SQLite::Database> open_reader(const std::filesystem::path& file) {
     constexpr int kPatienceMs = 5000;

@@ -14,6 +14,7 @@
 #include "server/store/sqlite/errors.h"
 #include "server/store/sqlite/rescue.h"
 #include "server/store/sqlite/schema.h"
+#include "server/store/sqlite/seal.h"
 #include "server/store/store_error.h"
 
 namespace leafcutter::server {
@@ -85,6 +86,7 @@ void SqliteEngine::back_up_to(const fs::path& file) const {
         crash_point("backup.before-rename");
         rename_durably(part, file);
         crash_point("backup.after-rename");
+        put_seal(file);
     } catch (const SQLite::Exception& error) {
         fs::remove(part);
         throw store_error_of(error);

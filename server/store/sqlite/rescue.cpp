@@ -14,6 +14,7 @@
 #include "server/store/sqlite/database.h"
 #include "server/store/sqlite/errors.h"
 #include "server/store/sqlite/schema.h"
+#include "server/store/sqlite/seal.h"
 #include "server/store/store_error.h"
 
 namespace leafcutter::server {
@@ -24,6 +25,8 @@ namespace {
 
 // About a third of a second of reading.
 constexpr std::uintmax_t kCheckedAtOnce = 64ULL << 20;
+
+constexpr const char* kOtherBytes = "its bytes are not those that were written";
 
 fs::path suspicion_of(const fs::path& file) {
     return file.string() + ".suspect";
@@ -50,6 +53,10 @@ std::string damage_of(const fs::path& file, bool all) {
 
 bool is_good_backup(const fs::path& file) {
     try {
+        if (seal_of(file) == Seal::Broken) {
+            spdlog::warn("backup {}: {}", file.string(), kOtherBytes);
+            return false;
+        }
         SQLite::Database database(file.string(), SQLite::OPEN_READONLY, 5000);
         const int version = schema_version(database);
         return version > 0 && version <= newest_schema() && quick_check(database).empty();
@@ -121,6 +128,11 @@ std::vector<fs::path> backups_in(const fs::path& folder) {
     return found;
 }
 
+void remove_backup(const fs::path& file) {
+    take_seal_off(file);
+    fs::remove(file);
+}
+
 void mark_suspect(const fs::path& file) noexcept {
     try {
         std::ofstream(suspicion_of(file)) << "look at all of it\n";
@@ -134,14 +146,21 @@ Rescue make_usable(const fs::path& file, const fs::path& backups) {
     if (error || size == 0) {
         return {};  // A new one.
     }
-    const bool all = size <= kCheckedAtOnce || fs::exists(suspicion_of(file));
-    const std::string damage = damage_of(file, all);
+    const bool is_suspect = fs::exists(suspicion_of(file));
+    const Seal seal = seal_of(file);
+    if (seal == Seal::Whole && !is_suspect) {
+        take_seal_off(file);
+        return {};
+    }
+    const std::string damage =
+        seal == Seal::Broken ? kOtherBytes : damage_of(file, is_suspect || size <= kCheckedAtOnce);
     Rescue done;
     if (!damage.empty()) {
         done = rescue(file, backups, damage);
         spdlog::error("{}", done.notice);
     }
     if (done.trouble.empty()) {
+        take_seal_off(file);  // One that only reads stays broken for the next start.
         fs::remove(suspicion_of(file), error);
     }
     return done;

@@ -26,4 +26,7 @@ void mark_suspect(const std::filesystem::path& file) noexcept;
 // The backups of a folder, newest first.
 std::vector<std::filesystem::path> backups_in(const std::filesystem::path& folder);
 
+// With its seal. Throws std::system_error.
+void remove_backup(const std::filesystem::path& file);
+
 }  // namespace leafcutter::server
