@@ -48,6 +48,28 @@ export async function openPage(browser, url, { viewport = kDesktop, colorScheme 
   return { page, faults, close: () => context.close() };
 }
 
+const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+// Reads until what is read is right, and returns it: a page shows the outcome of a click in its own time.
+export async function until(read, isRight, what) {
+  let last;
+  for (const end = Date.now() + kPatience; Date.now() < end; await pause(100)) {
+    last = await read();
+    if (isRight(last)) return last;
+  }
+  throw new Error(`waited in vain for ${what}; last: ${String(last).slice(0, 400)}`);
+}
+
+// Reads until it was the same for a second.
+export async function steady(read) {
+  let [last, since] = [await read(), Date.now()];
+  return until(async () => {
+    const now = await read();
+    if (now !== last) [last, since] = [now, Date.now()];
+    return now;
+  }, () => Date.now() - since >= 1000, 'something steady');
+}
+
 export async function picture(page, name, { fullPage = true } = {}) {
   const file = path.join(pictures, `${name}.png`);
   await page.screenshot({ path: file, fullPage });

@@ -7,11 +7,9 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 
-import { axeFaults, canvasColours, drop, kPhone, launch, openPage, picture } from './browser.mjs';
+import { axeFaults, canvasColours, drop, kPhone, launch, openPage, picture, steady, until } from './browser.mjs';
 import { startTarget } from './daemon.mjs';
 import { torusOff } from './mesh.mjs';
-
-const kLong = 120_000; // For computing and cutting on a busy machine.
 
 let target;
 let browser;
@@ -75,7 +73,7 @@ step('the mesh is seen before anything is sent', async () => {
   const strips = async () => Number((await desk.page.innerText('.estimate strong >> nth=0')).replace(',', ''));
   const wide = await strips();
   await desk.page.getByLabel('Strip width').fill('5');
-  assert.ok((await strips()) > 1.5 * wide, 'narrower strips are more');
+  await until(strips, (now) => now > 1.5 * wide, 'narrower strips are more');
   await desk.page.getByLabel('Strip width').fill('10');
 });
 
@@ -98,7 +96,7 @@ step('a place is picked on the model', async () => {
 step('a wrong measure is said at once and cannot be sent', async () => {
   const width = desk.page.getByLabel('Strip width');
   await width.fill('-3');
-  assert.match(await desk.page.innerText('.new-job [role=alert]'), /strip width/i);
+  await until(() => desk.page.innerText('.new-job [role=alert]'), (said) => /strip width/i.test(said), 'a fault that is said');
   assert.equal(await desk.page.isEnabled('.new-job [type=submit]'), false);
   await width.fill('16');
   await desk.page.getByRole('textbox', { name: 'Longest side' }).fill('200');
@@ -108,9 +106,9 @@ step('the layout is chosen among those that fit together', async () => {
   await desk.page.getByText('How the surface is laid out').click();
   const select = (name) => desk.page.getByRole('combobox', { name, exact: true });
   await select('Holes at the tips').selectOption('Never');
-  assert.equal(await select('Function').isVisible(), true);
+  await select('Function').waitFor();
   await select('Layout').selectOption('Closed both ways');
-  assert.equal(await select('Function').count(), 0);
+  await select('Function').waitFor({ state: 'detached' });
   await assertAccessible(desk.page, 'layout');
 });
 
@@ -130,19 +128,13 @@ step('the job computes while its stages are watched', async () => {
 step('the weave is drawn in 3D, in every mode, and turns by keyboard', async () => {
   const canvas = desk.page.locator('.model canvas');
   const seen = new Set([await canvas.evaluate((element) => element.toDataURL())]);
-  // Drawing in software on a busy machine takes its time.
-  const isNew = async (what) => {
-    for (const end = Date.now() + kLong; Date.now() < end; await desk.page.waitForTimeout(200)) {
-      const drawn = await canvas.evaluate((element) => element.toDataURL());
-      if (!seen.has(drawn)) return seen.add(drawn);
-    }
-    return assert.fail(`${what} looks like something before it`);
-  };
+  const draw = () => canvas.evaluate((element) => element.toDataURL());
+  const isNew = async (what) => seen.add(await until(draw, (drawn) => !seen.has(drawn), `${what}, unlike all before it`));
   for (const mode of ['Weft', 'Warp', 'Quads', 'Cylinders', 'Surface', 'Leaves', 'Quality']) {
     await desk.page.getByRole('button', { name: mode, exact: true }).click();
     await desk.page.waitForFunction(() => document.querySelector('.model .view-note') === null);
     await isNew(mode);
-    assert.ok((await canvasColours(desk.page)) > 10, mode);
+    await until(() => canvasColours(desk.page), (colours) => colours > 10, `colours of ${mode}`);
   }
   await canvas.focus();
   await desk.page.keyboard.press('ArrowLeft');
@@ -158,22 +150,21 @@ step('a daemon of ours gives the weave its real thickness', async () => {
   if ((await solid.count()) === 0) return;
   await solid.click();
   await desk.page.waitForFunction(() => document.querySelector('.model .view-note') === null);
-  await desk.page.waitForTimeout(500);
-  assert.ok((await canvasColours(desk.page)) > 20);
+  await until(() => canvasColours(desk.page), (colours) => colours > 20, 'colours of a thick weave');
   await picture(desk.page, 'thickness-light');
   await desk.page.getByRole('button', { name: 'Woven', exact: true }).click();
 });
 
 step('the sheets are drawn with every piece', async () => {
-  assert.ok((await desk.page.locator('.sheet .piece').count()) > 3);
+  await until(() => desk.page.locator('.sheet .piece').count(), (pieces) => pieces > 3, 'pieces on the sheet');
   await picture(desk.page, 'ready-light');
   await assertAccessible(desk.page, 'ready');
 });
 
 step('the layout and how even it is are said', async () => {
-  const panel = desk.page.locator('.foliation');
-  assert.match(await panel.innerText(), /Closed both ways/);
-  assert.match(await panel.innerText(), /largest .*times as long as the mean/);
+  const said = () => desk.page.locator('.foliation').innerText();
+  await until(said, (text) => /Closed both ways/.test(text), 'the layout');
+  await until(said, (text) => /largest .*times as long as the mean/.test(text), 'how even it is');
 });
 
 step('a strip chosen in 3D lights up on its sheet, and back', async () => {
@@ -185,19 +176,19 @@ step('a strip chosen in 3D lights up on its sheet, and back', async () => {
   }
   const chosen = await desk.page.inputValue('.strip-picker select');
   assert.notEqual(chosen, '');
-  assert.ok((await desk.page.locator(`.piece.chosen[data-strip="${chosen}"]`).count()) > 0);
+  await desk.page.locator(`.piece.chosen[data-strip="${chosen}"]`).first().waitFor({ state: 'attached' });
   await picture(desk.page, 'strip-light');
   const other = desk.page.locator(`.sheet .piece:not([data-strip="${chosen}"])`).first();
   const id = await other.getAttribute('data-strip');
   await other.locator('.outline').dispatchEvent('pointerdown', { pointerId: 1 });
   await other.locator('.outline').dispatchEvent('pointerup', { pointerId: 1 });
-  assert.equal(await desk.page.inputValue('.strip-picker select'), id);
+  await until(() => desk.page.inputValue('.strip-picker select'), (now) => now === id, `strip ${id} in the list`);
 });
 
 step('a figure of the report shows where it comes from', async () => {
   await desk.page.getByRole('button', { name: 'Distance to surface' }).click();
   await desk.page.waitForSelector('.heat-bar');
-  assert.equal(await desk.page.locator('.heat-legend select').inputValue(), 'distance');
+  await until(() => desk.page.locator('.heat-legend select').inputValue(), (now) => now === 'distance', 'the map of the distance');
   await picture(desk.page, 'heat-light', { fullPage: false });
   await assertAccessible(desk.page, 'heat map');
   await desk.page.getByRole('button', { name: 'Woven', exact: true }).click();
@@ -210,11 +201,11 @@ step('the cut is played from the exact program', async () => {
   await slider.waitFor();
   await page.waitForFunction(() => document.querySelectorAll('.burn path').length > 0);
   const end = Math.floor(Number(await slider.getAttribute('max')));
-  await slider.fill(String(Math.round(end / 2)));
-  const half = await page.evaluate(`(${burntLength})()`);
+  const burnt = () => page.evaluate(`(${burntLength})()`);
   await slider.fill(String(end));
-  const whole = await page.evaluate(`(${burntLength})()`);
-  assert.ok(half > 0.2 * whole && half < 0.8 * whole, `${half} of ${whole}`);
+  const whole = await steady(burnt);
+  await slider.fill(String(Math.round(end / 2)));
+  await until(burnt, (half) => half > 0.2 * whole && half < 0.8 * whole, `about half of ${whole}`);
   await assertAccessible(page, 'playing');
   await page.locator('.playback').getByRole('button', { name: 'Close' }).click();
 });
@@ -223,14 +214,14 @@ step('the sheet zooms and comes back', async () => {
   const view = () => desk.page.getAttribute('.sheet', 'viewBox');
   const whole = await view();
   await desk.page.locator('.sheets').getByRole('button', { name: 'Zoom in' }).click();
-  assert.notEqual(await view(), whole);
+  await until(view, (now) => now !== whole, 'a part of the sheet');
   await desk.page.locator('.sheets').getByRole('button', { name: 'Whole sheet' }).click();
-  assert.equal(await view(), whole);
+  await until(view, (now) => now === whole, 'the whole sheet');
 });
 
 step('the package can be downloaded', async () => {
   const files = desk.page.locator('.file-list a');
-  assert.ok((await files.count()) >= 6);
+  await until(() => files.count(), (now) => now >= 6, 'files of the package');
   const href = await files.first().getAttribute('href');
   assert.equal((await desk.page.request.get(target.url + href)).status(), 200);
 });
@@ -266,8 +257,8 @@ step('the burnt part grows while the machine cuts; pausing holds it', async () =
   await page.waitForFunction((before) => globalThis.burntLength() > before, early);
   await page.getByRole('button', { name: 'Pause' }).click();
   await page.waitForSelector('.cut.state-paused');
-  await page.waitForTimeout(300);
-  const held = await page.evaluate(() => globalThis.burntLength());
+  // What was under way when the machine held may still be drawn.
+  const held = await steady(() => page.evaluate(() => globalThis.burntLength()));
   await assertAccessible(page, 'paused');
   assert.equal(await page.evaluate(() => globalThis.burntLength()), held);
   await page.getByRole('button', { name: 'Resume' }).click();
@@ -328,12 +319,13 @@ step('the assembly is walked through on a phone, and the place is kept', async (
   const phone = await openPage(browser, `${jobAddress}/guide`, { viewport: kPhone, hasTouch: true, isMobile: true });
   const { page } = phone;
   await page.waitForSelector('.guide-picture canvas[data-ready=true]');
+  const made = async (count) => until(() => page.locator('.crossing.made').count(), (now) => now === count, 'crossings made');
   assert.match(await page.innerText('.guide-at'), /Step 1 of \d+/);
   await page.getByRole('button', { name: 'Done, next' }).tap();
   await page.waitForSelector('.crossing');
   assert.match(await page.innerText('.guide-words h2'), /Weave in W\d+/);
   await page.locator('.crossing').first().tap();
-  assert.equal(await page.locator('.crossing.made').count(), 1);
+  await made(1);
   await page.waitForTimeout(300);
   await picture(page, 'guide-phone', { fullPage: false });
   await assertAccessible(page, 'guide on a phone');
@@ -341,7 +333,7 @@ step('the assembly is walked through on a phone, and the place is kept', async (
   await page.reload();
   await page.waitForSelector('.crossing');
   assert.match(await page.innerText('.guide-at'), /Step 2 of \d+/);
-  assert.equal(await page.locator('.crossing.made').count(), 1);
+  await made(1);
   for (const tab of ['Parts', 'All steps']) {
     await page.getByRole('button', { name: tab, exact: true }).tap();
     await assertAccessible(page, `guide, ${tab}`);
@@ -374,14 +366,15 @@ step('a job is woven again with other settings and laid beside the first', async
   const { page } = desk;
   await page.getByRole('button', { name: 'Change and weave again' }).click();
   await page.waitForSelector('.new-job');
-  assert.equal(await page.getByLabel('Strip width').inputValue(), '16');
+  await until(() => page.getByLabel('Strip width').inputValue(), (now) => now === '16', 'the width of before');
   await page.getByLabel('Strip width').fill('20');
   await page.click('.new-job [type=submit]');
   await page.waitForSelector('.model canvas[data-ready=true]');
   await page.locator('.compare-with').selectOption({ index: 1 });
   await page.waitForSelector('.compare-figures td');
   await page.waitForFunction(() => document.querySelectorAll('.model canvas[data-ready=true]').length === 2);
-  assert.match(await page.innerText('.compare-page'), /grid\.strip_width_mm\s+20\s+16/);
+  const compared = () => page.innerText('.compare-page');
+  await until(compared, (said) => /grid\.strip_width_mm\s+20\s+16/.test(said), 'what differs');
   await picture(page, 'compare-light');
   await assertAccessible(page, 'compare');
 });
@@ -417,12 +410,13 @@ test('windows over the page are accessible and close with Escape', async () => {
     await page.getByRole('button', { name: button }).click();
     await page.waitForSelector('dialog[open]');
     await assertAccessible(page, button);
-    // An open list of suggestions takes the first one for itself.
-    for (let press = 0; press < 3 && (await page.locator('dialog').count()) > 0; press += 1) {
+    // An open list of suggestions takes the first one for itself. Never two at once: they stop the machines.
+    const isThere = async () => (await page.locator('dialog').count()) > 0;
+    for (let press = 0; press < 3 && (await isThere()); press += 1) {
       await page.keyboard.press('Escape');
-      await page.waitForSelector('dialog', { state: 'detached', timeout: 3000 }).catch(() => {});
+      await page.waitForSelector('dialog', { state: 'detached', timeout: 10_000 }).catch(() => undefined);
     }
-    assert.equal(await page.locator('dialog').count(), 0, button);
+    assert.equal(await isThere(), false, button);
   }
   await close();
 });
@@ -434,7 +428,7 @@ test('every language is spoken, and the choice is kept', async () => {
   for (const language of ['en', 'de', 'es', 'fr', 'zh']) {
     await page.locator('.settings-form select').selectOption(language);
     await page.waitForFunction((tag) => document.documentElement.lang.startsWith(tag), language);
-    heads.add(await page.innerText('.main-nav'));
+    heads.add(await until(() => page.innerText('.main-nav'), (words) => !heads.has(words), `words of its own in ${language}`));
     assert.deepEqual(await axeFaults(page), [], language);
   }
   assert.equal(heads.size, 5);
@@ -449,10 +443,10 @@ test('dark can be chosen against the system', async () => {
   const ground = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
   const light = await ground();
   await page.getByRole('button', { name: 'Dark' }).click();
-  assert.notEqual(await ground(), light);
+  await until(ground, (now) => now !== light, 'a dark ground');
   await page.reload();
   await page.waitForSelector('.settings-form');
-  assert.notEqual(await ground(), light);
+  await until(ground, (now) => now !== light, 'a dark ground that is kept');
   await close();
 });
 
@@ -510,11 +504,9 @@ test('the machine card shows the head and moves it', async () => {
   await picture(desk.page, 'machines-light');
   await assertAccessible(desk.page, 'machines');
   const x = async () => Number(await card.locator('.position dd').first().innerText());
-  const from = await x();
+  const from = await steady(x);
   await card.getByRole('button', { name: 'Right', exact: true }).click();
-  for (const end = Date.now() + kLong; (await x()) <= from + 9; await desk.page.waitForTimeout(100)) {
-    assert.ok(Date.now() < end, `from ${from} to ${await x()}; ${await desk.page.innerText('body')}`);
-  }
+  await until(x, (now) => now > from + 9, `to the right of ${from}`);
 });
 
 test('STOP reaches the machine while the event stream is down', async () => {

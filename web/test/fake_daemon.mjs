@@ -5,7 +5,7 @@ import { torusPackage } from './torus_package.mjs';
 
 const kStages = ['read', 'repair', 'foliation', 'quads', 'strips', 'nest', 'toolpath', 'package'];
 const kTickMs = 100;
-const kSeconds = { stage: 0.35, sheet: 9 };
+const kSeconds = { stage: 0.35, sheet: 24 };
 
 export class Refusal extends Error {
   constructor(status, code, detail, errors = []) {

@@ -1,6 +1,6 @@
 // Machines, ports, materials and stock, as they are looked after.
 
-import { fields, flag, list, number, optional, point, type Reader, record, text } from '../lib/check.ts';
+import { type Fields, fields, flag, list, number, optional, point, type Reader, record, text } from '../lib/check.ts';
 import { read, send } from './client.ts';
 import type { Point } from './package_files.ts';
 import { listUnder } from './payloads.ts';
@@ -57,6 +57,14 @@ export interface StockItem {
   readonly planned: number;
   readonly note: string;
   readonly fromJob: string;
+  readonly kept: Fields; // What is not changed here, and is sent back as it came.
+}
+
+const kKept = ['holes', 'defects', 'keep_out', 'cost', 'note'] as const;
+
+function keptOf(value: unknown): Fields {
+  const all = value as Fields;
+  return Object.fromEntries(kKept.filter((key) => all[key] !== undefined).map((key) => [key, all[key]]));
 }
 
 function sizeOf(outline: readonly Point[]): readonly [number, number] {
@@ -82,6 +90,7 @@ export const readStockItem: Reader<StockItem> = (value, path) => {
     planned: get('planned', optional(number, 0)),
     note: get('note', optional(text, '')),
     fromJob: get('from_job', optional(text, '')),
+    kept: keptOf(value),
   };
 };
 
@@ -91,11 +100,14 @@ export interface StockWish {
   readonly material: string;
   readonly widthMm: number;
   readonly heightMm: number;
-  readonly quantity: number;
+  readonly outline: readonly Point[] | null; // Null: the whole rectangle.
+  readonly quantity: number | null; // Null: as many as wanted.
+  readonly kept: Fields;
 }
 
 export async function putStock(id: string, wish: StockWish): Promise<void> {
-  const body = { material: wish.material, width_mm: wish.widthMm, height_mm: wish.heightMm, quantity: wish.quantity };
+  const shape = wish.outline === null ? { width_mm: wish.widthMm, height_mm: wish.heightMm } : { outline: wish.outline };
+  const body = { ...wish.kept, ...shape, material: wish.material, quantity: wish.quantity };
   await send('PUT', `/stock/${encodeURIComponent(id)}`, body);
 }
 

@@ -36,13 +36,19 @@ async function stopAll(): Promise<void> {
 
 const kDoublePressMs = 600;
 
-// Ctrl + . and Esc Esc stop everything.
+// Escape also closes windows and lists of suggestions, often at the second press: there it stops nothing.
+function closesSomething(event: KeyboardEvent): boolean {
+  return event.target instanceof Element && event.target.closest('dialog, input, select, textarea') !== null;
+}
+
+// Ctrl + . stops everything, everywhere; so does Esc Esc where Escape has no other meaning.
 function useStopKeys(): void {
   useEffect(() => {
     let lastEscape = -Infinity;
     const onKey = (event: KeyboardEvent): void => {
-      const twice = event.key === 'Escape' && !event.repeat && event.timeStamp - lastEscape < kDoublePressMs;
-      if (event.key === 'Escape') lastEscape = event.timeStamp;
+      const escape = event.key === 'Escape' && !event.repeat && !closesSomething(event);
+      const twice = escape && event.timeStamp - lastEscape < kDoublePressMs;
+      if (escape) lastEscape = event.timeStamp;
       if (!twice && !(event.key === '.' && event.ctrlKey)) return;
       event.preventDefault();
       void stopAll();

@@ -40,6 +40,17 @@ export const library = {
     planned: (count: string) => `${count} verplant`,
     material: 'Material',
     quantity: 'Wie viele',
+    change: 'Lager ändern',
+    outline: {
+      label: 'Umriss',
+      whole: 'Rechteck',
+      drawn: 'Gezeichnet',
+      hint: 'Ecken ziehen oder mit den Pfeiltasten bewegen (Umschalt: 10 mm). Die kleinen Punkte fügen eine Ecke hinzu.',
+      corner: (n: string) => `Ecke ${n}`,
+      split: (n: string) => `Eine Ecke nach Ecke ${n} einfügen`,
+      drop: 'Ecke entfernen',
+      faults: { few: 'Der Umriss braucht drei Ecken und eine Fläche.', crosses: 'Der Umriss kreuzt sich selbst.' },
+    },
   },
   compare: {
     title: 'Nebeneinander',

@@ -40,6 +40,17 @@ export const library = {
     planned: (count: string) => `${count} planned`,
     material: 'Material',
     quantity: 'How many',
+    change: 'Change stock',
+    outline: {
+      label: 'Outline',
+      whole: 'Rectangle',
+      drawn: 'Drawn',
+      hint: 'Drag the corners, or move them with the arrow keys (Shift: 10 mm). The small dots add a corner.',
+      corner: (n: string) => `Corner ${n}`,
+      split: (n: string) => `Add a corner after corner ${n}`,
+      drop: 'Take corner away',
+      faults: { few: 'The outline needs three corners and an area.', crosses: 'The outline crosses itself.' },
+    },
   },
   compare: {
     title: 'Side by side',

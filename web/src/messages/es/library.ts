@@ -40,6 +40,17 @@ export const library = {
     planned: (count: string) => `${count} previstas`,
     material: 'Material',
     quantity: 'Cuántas',
+    change: 'Cambiar existencias',
+    outline: {
+      label: 'Contorno',
+      whole: 'Rectángulo',
+      drawn: 'Dibujado',
+      hint: 'Arrastra las esquinas o muévelas con las flechas (Mayús: 10 mm). Los puntos pequeños añaden una esquina.',
+      corner: (n: string) => `Esquina ${n}`,
+      split: (n: string) => `Añadir una esquina tras la esquina ${n}`,
+      drop: 'Quitar la esquina',
+      faults: { few: 'El contorno necesita tres esquinas y un área.', crosses: 'El contorno se cruza a sí mismo.' },
+    },
   },
   compare: {
     title: 'Lado a lado',

@@ -40,6 +40,17 @@ export const library = {
     planned: (count: string) => `${count} prévues`,
     material: 'Matériaux',
     quantity: 'Combien',
+    change: 'Modifier le stock',
+    outline: {
+      label: 'Contour',
+      whole: 'Rectangle',
+      drawn: 'Dessiné',
+      hint: 'Tirez les coins ou déplacez-les avec les flèches (Maj : 10 mm). Les petits points ajoutent un coin.',
+      corner: (n: string) => `Coin ${n}`,
+      split: (n: string) => `Ajouter un coin après le coin ${n}`,
+      drop: 'Retirer le coin',
+      faults: { few: 'Le contour demande trois coins et une surface.', crosses: 'Le contour se croise lui-même.' },
+    },
   },
   compare: {
     title: 'Côte à côte',

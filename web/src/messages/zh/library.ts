@@ -40,6 +40,17 @@ export const library = {
     planned: (count: string) => `已计划 ${count}`,
     material: '材料',
     quantity: '数量',
+    change: '更改库存',
+    outline: {
+      label: '轮廓',
+      whole: '矩形',
+      drawn: '绘制',
+      hint: '拖动角点，或用方向键移动（按住 Shift 为 10 毫米）。小圆点可添加角点。',
+      corner: (n: string) => `角点 ${n}`,
+      split: (n: string) => `在角点 ${n} 之后添加角点`,
+      drop: '删除角点',
+      faults: { few: '轮廓至少需要三个角点并围出面积。', crosses: '轮廓自相交。' },
+    },
   },
   compare: {
     title: '并排对比',

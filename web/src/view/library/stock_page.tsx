@@ -2,23 +2,18 @@
 
 import { useEffect, useState } from 'preact/hooks';
 
-import type { Point } from '../../api/package_files.ts';
-import { listStock, putStock, removeStock, type StockItem } from '../../api/workshop.ts';
+import { listStock, removeStock, type StockItem } from '../../api/workshop.ts';
 import { count, figure } from '../../lib/format.ts';
 import { t } from '../../messages/messages.ts';
+import { rectangle } from '../../state/outline.ts';
 import { formatRoute } from '../../state/route.ts';
 import { pathData } from '../../state/sheets.ts';
 import { attempt, feed, loadMaterials, materialName, materials } from '../../state/store.ts';
 import { AskButton } from '../controls.tsx';
-import { Dialog, DialogButtons } from '../dialog.tsx';
-import { idFor, numberOf, SelectField, TextField } from '../fields.tsx';
 import { Icon } from '../icons.tsx';
 import { PageTabs } from '../tabs.tsx';
 import { useCall } from '../use_call.ts';
-
-function rectangle(width: number, height: number): readonly Point[] {
-  return [[0, 0], [width, 0], [width, height], [0, height]];
-}
+import { StockForm } from './stock_form.tsx';
 
 export function StockPicture(props: { readonly item: StockItem; readonly scaleMm: number }) {
   const { item, scaleMm } = props;
@@ -35,8 +30,8 @@ export function StockPicture(props: { readonly item: StockItem; readonly scaleMm
   );
 }
 
-function StockCard(props: { readonly item: StockItem; readonly scaleMm: number; readonly onChange: () => void }) {
-  const { item, scaleMm, onChange } = props;
+function StockCard(props: { readonly item: StockItem; readonly scaleMm: number; readonly onChange: () => void; readonly onEdit: () => void }) {
+  const { item, scaleMm, onChange, onEdit } = props;
   const job = feed.value.jobs.get(item.fromJob);
   const many = item.quantity === null ? t.stock.endless : t.stock.pieces(item.quantity);
   const remove = (): void => {
@@ -60,59 +55,18 @@ function StockCard(props: { readonly item: StockItem; readonly scaleMm: number; 
             {job?.name ?? item.fromJob}
           </a>
         )}
+        <button type="button" class="button small" onClick={onEdit}>
+          {t.edit}
+        </button>
         <AskButton class="button small" label={t.remove} question={t.job.reallyRemove} onConfirm={remove} />
       </div>
     </li>
   );
 }
 
-function StockForm(props: { readonly taken: readonly string[]; readonly onClose: () => void; readonly onDone: () => void }) {
-  const { taken, onClose, onDone } = props;
-  const [material, setMaterial] = useState(materials.value[0]?.id ?? '');
-  const [width, setWidth] = useState('600');
-  const [height, setHeight] = useState('400');
-  const [quantity, setQuantity] = useState('1');
-  const [busy, setBusy] = useState(false);
-  const [w, h, q] = [numberOf(width), numberOf(height), numberOf(quantity)];
-  const can = w !== null && w > 0 && h !== null && h > 0 && q !== null && Number.isInteger(q) && q > 0;
-  const save = async (): Promise<void> => {
-    setBusy(true);
-    const wish = { material, widthMm: w ?? 0, heightMm: h ?? 0, quantity: q ?? 1 };
-    const done = await attempt(() => putStock(idFor(`${material}-${width}x${height}`, taken), wish));
-    setBusy(false);
-    if (!done) return;
-    onDone();
-    onClose();
-  };
-  return (
-    <Dialog title={t.stock.add} onClose={onClose}>
-      <form
-        class="dialog-form"
-        onSubmit={(event) => {
-          event.preventDefault();
-          if (can) void save();
-        }}
-      >
-        <SelectField
-          label={t.stock.material}
-          value={material}
-          choices={materials.value.map((one) => ({ value: one.id, label: one.name }))}
-          onChange={setMaterial}
-        />
-        <div class="measures">
-          <TextField label={t.materials.fields.width} value={width} onInput={setWidth} unit="mm" decimal bad={w === null} />
-          <TextField label={t.materials.fields.height} value={height} onInput={setHeight} unit="mm" decimal bad={h === null} />
-          <TextField label={t.stock.quantity} value={quantity} onInput={setQuantity} decimal bad={q === null} />
-        </div>
-        <DialogButtons busy={busy} can={can} label={t.save} onClose={onClose} />
-      </form>
-    </Dialog>
-  );
-}
-
 export function StockPage() {
   const [called, load] = useCall(listStock);
-  const [adding, setAdding] = useState(false);
+  const [form, setForm] = useState<'new' | StockItem | null>(null);
   useEffect(() => void loadMaterials().catch(() => undefined), []);
   const items = called.state === 'there' ? called.value : [];
   const scaleMm = Math.max(100, ...items.map((item) => item.widthMm)) + 4;
@@ -122,7 +76,7 @@ export function StockPage() {
       <header class="page-head">
         <h1>{t.tabs.stock}</h1>
         {called.state === 'there' && (
-          <button type="button" class="button" onClick={() => setAdding(true)}>
+          <button type="button" class="button" onClick={() => setForm('new')}>
             <Icon name="plus" />
             {t.stock.add}
           </button>
@@ -133,10 +87,17 @@ export function StockPage() {
       {called.state === 'there' && items.length === 0 && <p class="quiet empty">{t.stock.none}</p>}
       <ul class="stock-list">
         {items.map((item) => (
-          <StockCard key={item.id} item={item} scaleMm={scaleMm} onChange={() => void load()} />
+          <StockCard key={item.id} item={item} scaleMm={scaleMm} onChange={() => void load()} onEdit={() => setForm(item)} />
         ))}
       </ul>
-      {adding && <StockForm taken={items.map((item) => item.id)} onClose={() => setAdding(false)} onDone={() => void load()} />}
+      {form !== null && (
+        <StockForm
+          item={form === 'new' ? null : form}
+          taken={items.map((item) => item.id)}
+          onClose={() => setForm(null)}
+          onDone={() => void load()}
+        />
+      )}
     </div>
   );
 }
