@@ -171,14 +171,15 @@ void DeviceRunner::settle(const drivers::JobProgress& progress) {
         cut = current_.value();
     }
     close_beam(progress);
-    write_outcome(cut, progress);
-    ended_beam_.reset();
-    trouble_.clear();
     {
+        const std::scoped_lock settling(settling_);
+        write_outcome(cut, progress);
         const std::scoped_lock lock(mutex_);
         current_.reset();
         abort_wanted_ = false;
     }
+    ended_beam_.reset();
+    trouble_.clear();
     look_at_queue_ = queue_changed_ = true;
     hooks_.on_cut(cut.id);
 }

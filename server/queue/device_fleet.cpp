@@ -49,7 +49,7 @@ std::vector<std::shared_ptr<DeviceRunner>> DeviceFleet::all() const {
 
 void DeviceFleet::check_idle(const std::string& id) const {
     const std::shared_ptr<DeviceRunner> runner = find(id);
-    if (runner && runner->current_cut()) {
+    if (runner && runner->is_cutting()) {
         throw drivers::Refused("a cut is in work on this machine: wait for its end or abort it");
     }
 }

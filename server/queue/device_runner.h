@@ -58,8 +58,10 @@ public:
     std::optional<std::string> current_cut() const;
     std::optional<CutProgress> live_progress(const std::string& cut) const;
 
-    // The machine is idle and nothing is in work: a cut may start.
+    // The machine is idle and nothing is in work: a cut may start. Both wait where the end of a cut
+    // is just being written down: who reads there that it is over finds the machine free.
     bool is_ready() const;
+    bool is_cutting() const;
 
     // There may be an armed cut.
     void wake();
@@ -142,7 +144,8 @@ private:
     std::atomic<bool> closing_{false};
     std::atomic<bool> word_given_{false};  // By a reset since the last cut began.
 
-    mutable std::mutex mutex_;  // Guards the members up to the next blank line.
+    mutable std::mutex settling_;  // Held from before a cut's end is on disk until it is let go.
+    mutable std::mutex mutex_;     // Guards the members up to the next blank line.
     std::condition_variable_any nudged_;
     // Shared: a caller may be inside the device while the runner drops it.
     std::shared_ptr<drivers::Device> device_;
