@@ -71,6 +71,9 @@ class Load(unittest.TestCase):
             self.assertEqual(daemon.call("PUT", "/api/v1/devices/wire", wire, AS_JSON)[0], 201)
             idle = self.timed(daemon, CALLS // 2)
             streams = Streams(daemon.port, STREAMS)
+            deadline = time.monotonic() + 30  # On their way they are waiting connections, which are counted, too.
+            while f"leafcutter_event_clients {STREAMS}\n" not in daemon.call("GET", "/metrics")[1].decode():
+                self.assertLess(time.monotonic(), deadline)
             slow = []
             for _ in range(SLOW):
                 client = socket.create_connection(("127.0.0.1", daemon.port), timeout=20)
@@ -107,10 +110,13 @@ class Load(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             daemon = Daemon(folder, free_port())
             streams = Streams(daemon.port, 20)
-            self.stir(daemon, events // 5)
+            daemon.call("POST", "/api/v1/queue/pause", "{}", AS_JSON)
+            jobs = [json.loads(daemon.call("POST", "/api/v1/jobs", *form(f"e{number}", "events"))[1])["id"]
+                    for number in range(4)]
+            self.stir(daemon, jobs, events // 5)
             before = daemon.rss_mb()
             begun = time.monotonic()
-            self.stir(daemon, events)
+            self.stir(daemon, jobs, events)
             took = time.monotonic() - begun
             after = daemon.rss_mb()
             metrics = daemon.call("GET", "/metrics")[1].decode()
@@ -124,16 +130,15 @@ class Load(unittest.TestCase):
         self.assertEqual(streams.lost, 0)
         self.assertLess(after - before, 10)
 
-    def stir(self, daemon, count):
-        """So many changes of the queue, each with its event."""
-        def change(calls):
+    def stir(self, daemon, jobs, count):
+        """So many changes of waiting jobs, each with its event."""
+        def change(job):
             connection = http.client.HTTPConnection("127.0.0.1", daemon.port, timeout=20)
-            for number in range(calls):
-                word = "pause" if number % 2 == 0 else "resume"
-                connection.request("POST", f"/api/v1/queue/{word}", "{}", AS_JSON)
+            for number in range(count // len(jobs) + 1):
+                connection.request("PATCH", f"/api/v1/jobs/{job}", json.dumps({"priority": number % 2 + 1}), AS_JSON)
                 connection.getresponse().read()
             connection.close()
-        threads = [threading.Thread(target=change, args=(count // 4 + 1,)) for _ in range(4)]
+        threads = [threading.Thread(target=change, args=(job,)) for job in jobs]
         for thread in threads:
             thread.start()
         for thread in threads:
