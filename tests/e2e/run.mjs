@@ -217,6 +217,10 @@ step('the sheet zooms and comes back', async () => {
   await until(view, (now) => now !== whole, 'a part of the sheet');
   await desk.page.locator('.sheets').getByRole('button', { name: 'Whole sheet' }).click();
   await until(view, (now) => now === whole, 'the whole sheet');
+  await desk.page.locator('svg.sheet').focus();
+  await desk.page.keyboard.press('+');
+  await until(view, (now) => now !== whole, 'a part of the sheet, by keyboard');
+  await desk.page.locator('.sheets').getByRole('button', { name: 'Whole sheet' }).click();
 });
 
 step('the package can be downloaded', async () => {
