@@ -2,8 +2,11 @@
 // and to list. Usage: bench_store [JOBS] [QUEUED]
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -47,6 +50,26 @@ ComputedJob package() {
     return result;
 }
 
+// By many at once, whose jobs share their commits.
+void fill(Store& store, int jobs, int queued) {
+    constexpr int kClients = 64;
+    const ComputedJob result = package();
+    std::atomic<int> next{0};
+    std::vector<std::jthread> clients;
+    for (int client = 0; client < kClients; ++client) {
+        clients.emplace_back([&] {
+            for (int i = next++; i < jobs; i = next++) {
+                const NewJob job{fmt::format("job {}", i), {"a.obj", 3, sha256_of("abc")}, "{}"};
+                if (i < jobs - queued) {
+                    store.jobs.add_ready(job, "", result);
+                } else {
+                    store.jobs.add(job, std::nullopt);
+                }
+            }
+        });
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -56,17 +79,10 @@ int main(int argc, char** argv) {
     {
         Store store(folder.path(), [] {});
         const Clock::time_point begun = Clock::now();
-        const ComputedJob result = package();
-        for (int i = 0; i < jobs; ++i) {
-            const NewJob job{fmt::format("job {}", i), {"a.obj", 3, sha256_of("abc")}, "{}"};
-            if (i < jobs - queued) {
-                store.jobs.add_ready(job, "", result);
-            } else {
-                store.jobs.add(job, std::nullopt);
-            }
-        }
+        fill(store, jobs, queued);
         fmt::print("{} jobs, {} of them queued: filled in {:.0f} s\n", jobs, queued,
                    ms_since(begun) / 1000.0);
+        std::fflush(stdout);
     }
     time_of("open", 3, [&folder] { const Store store(folder.path(), [] {}); });
     Store store(folder.path(), [] {});

@@ -29,6 +29,8 @@ export type Job = {
     readonly sheets?: number;
     readonly estimated_s?: number;
     readonly warnings?: readonly (string)[];
+    readonly test?: "kerf" | "power";
+    readonly reading?: string;
   } | null;
   readonly sheets: readonly ({
     readonly id?: number;
@@ -98,6 +100,15 @@ export type Cut = {
   readonly reason: string;
   readonly created_at: string;
   readonly updated_at: string;
+  readonly steps: readonly ({
+    readonly step: "remove-sheet" | "load-sheet" | "keep-sheet" | "home" | "measure-burnt" | "frame" | "bed-clear" | "start" | "confirm-sheet" | "finish";
+    readonly required: boolean;
+    readonly done: boolean | null;
+    readonly sheet?: number;
+    readonly material?: string;
+    readonly size_mm?: readonly (number)[];
+    readonly stock?: string | null;
+  })[];
   readonly actions: readonly ("start" | "pause" | "resume" | "abort" | "confirm-sheet" | "finish")[];
 };
 
@@ -331,6 +342,7 @@ export type Call =
   | "DELETE /jobs/{id}"
   | "POST /jobs/{id}/recompute"
   | "POST /jobs/{id}/recut"
+  | "POST /test-cards"
   | "GET /jobs/{id}/artifacts"
   | "GET /jobs/{id}/artifacts/{path}"
   | "GET /jobs/{id}/package.zip"

@@ -35,16 +35,20 @@ const pause = (ms: number): Promise<void> => new Promise((resolve) => setTimeout
 
 class Jogger {
   private held = 0; // Changes with every press and release: older loops end.
+  private lasts = false; // The press is one that moves on.
 
   constructor(readonly device: string) {}
 
   press({ dx, dy }: Direction, stepMm: number): void {
     const mine = (this.held += 1);
+    this.lasts = false;
     const go = (mm: number): Promise<void> =>
       jogDevice(this.device, { dxMm: dx * mm, dyMm: dy * mm, feedMmPerMin: kFeedMmPerMin });
     const hold = async (): Promise<void> => {
       await go(stepMm);
       await pause(kHoldAfterMs);
+      if (this.held !== mine) return;
+      this.lasts = true;
       const small = Math.min(stepMm, (kFeedMmPerMin / 60_000) * kHeldStepMs);
       while (this.held === mine) {
         await go(small);
@@ -57,10 +61,10 @@ class Jogger {
     });
   }
 
-  // Safe to call at any time.
+  // Safe to call at any time. The step of a short press is gone to its end.
   release(canCancel: boolean): void {
     this.held += 1;
-    if (canCancel) commandDevice(this.device, 'jog-cancel').catch(() => undefined);
+    if (canCancel && this.lasts) commandDevice(this.device, 'jog-cancel').catch(() => undefined);
   }
 }
 
