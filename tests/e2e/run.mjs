@@ -581,3 +581,17 @@ test('dark looks as finished as light', async () => {
   assert.deepEqual(dark.faults, []);
   await dark.close();
 });
+
+test('a node of a fleet is drained and taken up again', async (context) => {
+  if (target.made !== 'fake') return context.skip('a daemon started here works alone');
+  const { page, faults, close } = await openPage(browser, `${target.url}/#/machines`);
+  const node = page.locator('.fleet-node', { hasText: 'attic' });
+  await node.getByRole('button', { name: 'Drain' }).click();
+  await node.getByText('finished').waitFor();
+  assert.deepEqual(await axeFaults(page), []);
+  await picture(page, 'fleet-light');
+  await node.getByRole('button', { name: 'Go on' }).click();
+  await node.getByText('at work').waitFor();
+  assert.deepEqual(faults, []);
+  return close();
+});
