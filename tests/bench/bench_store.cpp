@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -84,7 +85,11 @@ int main(int argc, char** argv) {
                    ms_since(begun) / 1000.0);
         std::fflush(stdout);
     }
-    time_of("open", 3, [&folder] { const Store store(folder.path(), [] {}); });
+    std::unique_ptr<Store> opened;
+    time_of("open", 1, [&] { opened = std::make_unique<Store>(folder.path(), [] {}); });
+    time_of("close", 1, [&opened] { opened.reset(); });
+    time_of("open again", 1, [&] { opened = std::make_unique<Store>(folder.path(), [] {}); });
+    opened.reset();
     Store store(folder.path(), [] {});
     time_of("claim", 200, [&store] { store.jobs.claim(); });
     JobQuery page;

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 1ULL << 30;
+constexpr std::uintmax_t kMostBytes = 256ULL << 20;  // A quarter of a second of reading.
 
 fs::path seal_file(const fs::path& file) {
     return file.string() + ".seal";

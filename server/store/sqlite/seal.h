@@ -14,8 +14,8 @@ enum class Seal {
     Broken,  // Other bytes, and nobody wrote them.
 };
 
-// Of a closed file without a journal; does nothing for one that has a journal or is too large to be
-// looked at within a second. A seal that can't be written is none.
+// Of a closed file without a journal; does nothing for one that has a journal or has more than 256
+// MB: a start must not wait for it. A seal that can't be written is none.
 void put_seal(const std::filesystem::path& file) noexcept;
 
 // Reads the whole file if it was sealed.
