@@ -53,6 +53,7 @@ void add_cuts_command(CLI::App& app, const CommonOptions& common);
 void add_jobs_command(CLI::App& app, const CommonOptions& common);
 void add_serve_command(CLI::App& app, const CommonOptions& common);
 void add_user_command(CLI::App& app, const CommonOptions& common);
+void add_store_command(CLI::App& app, const CommonOptions& common);
 void add_submit_command(CLI::App& app, const CommonOptions& common);
 void add_send_command(CLI::App& app, const CommonOptions& common);
 void add_simulate_command(CLI::App& app, const CommonOptions& common);
