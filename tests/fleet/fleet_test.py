@@ -216,7 +216,7 @@ class FleetTest(FleetCase):
             self.assertEqual(self.job(job)["state"], "ready")
 
     def test_a_cut_goes_on_without_the_database_and_is_told_afterwards(self):
-        self.populate(speed=1)
+        self.populate(speed=5)
         first, second = (self.submit(f"plate-{number}", 130 + number) for number in range(2))
         self.ready(first)
         self.ready(second)
@@ -235,7 +235,7 @@ class FleetTest(FleetCase):
     def test_a_station_cut_off_finishes_what_it_has_and_begins_nothing(self):
         if not namespaced():
             self.skipTest("needs network namespaces")
-        self.populate(speed=1)
+        self.populate(speed=5)
         first, second = (self.submit(f"plate-{number}", 130 + number) for number in range(2))
         self.ready(first)
         self.ready(second)
@@ -258,7 +258,7 @@ class FleetTest(FleetCase):
         self.burnt_once("station0", [first, second])
 
     def test_a_killed_station_leaves_its_cut_interrupted_for_ever(self):
-        self.populate(speed=1)
+        self.populate(speed=5)
         job = self.submit("plate", 130)
         self.ready(job)
         cut = self.cut(job, "station0")
