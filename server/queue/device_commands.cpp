@@ -30,6 +30,12 @@ std::optional<std::string> DeviceRunner::current_cut() const {
     return current_ ? std::optional(current_->id) : std::nullopt;
 }
 
+std::optional<CutRecord> DeviceRunner::cut_in_work() const {
+    const std::scoped_lock lock(mutex_);
+    const bool begun = current_ && current_->state != CutState::Armed;
+    return begun ? current_ : std::nullopt;
+}
+
 std::optional<CutProgress> DeviceRunner::live_progress(const std::string& cut) const {
     const std::scoped_lock lock(mutex_);
     return current_ && current_->id == cut ? std::optional(progress_) : std::nullopt;

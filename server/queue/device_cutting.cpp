@@ -196,6 +196,7 @@ void DeviceRunner::close_beam(const drivers::JobProgress& progress) {
 }
 
 void DeviceRunner::write_outcome(const CutRecord& cut, const drivers::JobProgress& progress) {
+    store_.cuts.reclaim(cut);  // Where the fleet had lost sight of this station.
     if (progress.outcome == JobOutcome::Done) {
         store_.cuts.finish_sheet(cut, counted(progress));
         forget_beam(store_, cut);

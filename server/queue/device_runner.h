@@ -26,7 +26,7 @@
 namespace leafcutter::server {
 
 // What becomes of a cut in work when the daemon stops. Finish waits for the end of its sheet before
-// the runners are stopped (take_no_more()); a runner that is stopped all the same pauses.
+// the runners are stopped (set_appetite()); a runner that is stopped all the same pauses.
 enum class StopPolicy { Pause, Finish, Abort };
 
 struct DeviceHooks {
@@ -56,6 +56,7 @@ public:
 
     // The cut in work, and how far it is.
     std::optional<std::string> current_cut() const;
+    std::optional<CutRecord> cut_in_work() const;  // Begun for certain.
     std::optional<CutProgress> live_progress(const std::string& cut) const;
 
     // The machine is idle and nothing is in work: a cut may start. Both wait where the end of a cut
@@ -66,8 +67,9 @@ public:
     // There may be an armed cut.
     void wake();
 
-    // From now on nothing new is begun; the sheet in work goes on.
-    void take_no_more() { closing_ = true; }
+    // Whether anything new is begun; the sheet in work goes on.
+    enum class Appetite { TakesMore, TakesNoMore };
+    void set_appetite(Appetite appetite) { closing_ = appetite == Appetite::TakesNoMore; }
 
     // Something was plugged in: its machine may be back.
     void look_for_machine();
