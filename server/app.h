@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -15,6 +17,9 @@
 #include "server/auth/audit_log.h"
 #include "server/auth/login_limit.h"
 #include "server/config.h"
+#include "server/fleet/fleet_node.h"
+#include "server/fleet/peers.h"
+#include "server/fleet/remote_views.h"
 #include "server/http/edge.h"
 #include "server/http/event_hub.h"
 #include "server/http/http_metrics.h"
@@ -74,6 +79,14 @@ public:
     Housekeeper& housekeeper() { return *housekeeper_; }
     EventHub& hub() { return hub_; }
     const AppParts& parts() const { return parts_; }
+    const Peers& peers() const { return peers_; }
+    const RemoteViews& remote() const { return remote_; }
+
+    // Another node may have let somebody in just now. False: nothing can have changed.
+    bool look_again_for_accounts(const Request& request);
+
+    // Null: a daemon alone.
+    const FleetSelf* self() const { return self_.id.empty() ? nullptr : &self_; }
     const std::filesystem::path& burn_logs() const { return burn_logs_; }
     int port() const { return edge_->port(); }
 
@@ -81,21 +94,30 @@ private:
     EventSource event_source();
     void begin_webhooks(const Config& config);
     void after_commit();
+    StoreChoice store_choice(const Config& config);
+    void begin_fleet(const Config& config);
+    void hear(const std::string& text);
+    void post(const std::string& type, const std::string& id);
 
     const AppParts parts_;
     const std::filesystem::path burn_logs_;  // Folder of simulated machines' beam logs.
+    FleetSelf self_;
+    Peers peers_;
+    RemoteViews remote_;
     EventHub hub_;
     std::unique_ptr<Store> store_;
     std::unique_ptr<Accounts> accounts_;
+    std::atomic<std::int64_t> accounts_seen_s_{0};  // By the steady clock.
     LoginLimit login_limit_;
     std::unique_ptr<AuditLog> audit_;
     std::unique_ptr<ComputeRunner> compute_;
     std::unique_ptr<DeviceFleet> fleet_;
     const StopPolicy stop_policy_;
     HttpMetrics http_metrics_;
-    std::mutex webhooks_mutex_;  // Guards the list while it is built and taken down.
+    std::mutex webhooks_mutex_;  // Guards the list and node_ while they are built and taken down.
     std::vector<std::unique_ptr<Webhook>> webhooks_;
     std::unique_ptr<Housekeeper> housekeeper_;
+    std::unique_ptr<FleetNode> node_;  // Null for a daemon alone.
     std::unique_ptr<Edge> edge_;
 };
 

@@ -10,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include "drivers/device.h"
+#include "server/http/host_names.h"
 #include "server/webhook/post.h"
 
 namespace leafcutter::server {
@@ -158,6 +159,36 @@ LogFormat log_format_of(const toml::node& node) {
     return word == "json" ? LogFormat::Json : LogFormat::Text;
 }
 
+NodeRole node_role_of(const toml::node& node) {
+    const auto role = node_role_named(value_of<std::string>(node, "role", "a string"));
+    if (!role) {
+        fail(node.source(), "role: must be all, api, worker or station");
+    }
+    return *role;
+}
+
+bool read_fleet_key(std::string_view key, const toml::node& node, Config& config) {
+    struct Word {
+        std::string_view name;
+        std::string* text;
+    };
+    const Word words[] = {{"store", &config.store},
+                          {"node", &config.node},
+                          {"advertise", &config.advertise},
+                          {"fleet_key", &config.fleet_key}};
+    for (const auto& [name, text] : words) {
+        if (key == name) {
+            *text = value_of<std::string>(node, std::string(name), "a string");
+            return true;
+        }
+    }
+    if (key == "role") {
+        config.role = node_role_of(node);
+        return true;
+    }
+    return false;
+}
+
 bool read_count(std::string_view key, const toml::node& node, Config& config) {
     struct Count {
         std::string_view name;
@@ -168,7 +199,8 @@ bool read_count(std::string_view key, const toml::node& node, Config& config) {
                             {"compute_workers", &config.compute_workers, 256},
                             {"threads_per_job", &config.threads_per_job, 256},
                             {"job_memory_mb", &config.job_memory_mb, 1 << 24},
-                            {"job_minutes", &config.job_minutes, 60 * 24 * 30}};
+                            {"job_minutes", &config.job_minutes, 60 * 24 * 30},
+                            {"lease_s", &config.lease_s, 3600}};
     for (const auto& [name, count, most] : counts) {
         if (key == name) {
             *count = count_of(node, std::string(name), most);
@@ -199,7 +231,7 @@ void read_key(std::string_view key, const toml::node& node, Config& config) {
         read_tables(node, "webhook", [&config](const toml::table& table) {
             config.webhooks.push_back(webhook_of(table));
         });
-    } else if (!read_count(key, node, config)) {
+    } else if (!read_count(key, node, config) && !read_fleet_key(key, node, config)) {
         fail(node.source(), fmt::format("{}: there is no such key", key));
     }
 }
@@ -224,6 +256,37 @@ ListenAddress parse_listen(const std::string& text) {
         listen.address = address == "localhost" ? "127.0.0.1" : address;
     }
     return listen;
+}
+
+void check_fleet(Config& config) {
+    if (config.store.empty()) {
+        if (config.role != NodeRole::All) {
+            throw BadConfig(fmt::format(
+                "role: a node that is only {} needs others: name their database with store",
+                to_string(config.role)));
+        }
+        return;
+    }
+    if (!config.store.starts_with("postgresql://") && !config.store.starts_with("postgres://")) {
+        throw BadConfig("store: must be postgresql://USER@HOST/DATABASE");
+    }
+    constexpr std::size_t kShortestKey = 16;
+    if (config.fleet_key.size() < kShortestKey) {
+        throw BadConfig("fleet_key: must have 16 letters at least, the same on every node");
+    }
+    if (config.node.empty()) {
+        config.node = lower_host_name();
+    }
+    const auto is_plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
+    };
+    if (config.node.empty() || config.node.size() > 64 ||
+        !std::all_of(config.node.begin(), config.node.end(), is_plain)) {
+        throw BadConfig("node: must be 1 to 64 of a-z, 0-9, '-', '_' and '.'");
+    }
+    if (!config.advertise.empty() && !target_of(config.advertise)) {
+        throw BadConfig("advertise: must be http://HOST:PORT");
+    }
 }
 
 bool is_loopback(const std::string& address) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "server/fleet/node_role.h"
 #include "server/log_format.h"
 #include "server/queue/device_runner.h"
 #include "server/store/records.h"
@@ -40,10 +41,22 @@ struct Config {
     LogFormat log_format = LogFormat::Text;
     std::vector<DeviceRecord> devices;
     std::vector<WebhookConfig> webhooks;
+
+    // Of a fleet; see server/fleet/README.md.
+    std::string store;  // "postgresql://…"; empty: SQLite in the state folder, and no fleet.
+    NodeRole role = NodeRole::All;
+    std::string node;       // This node's name among the others; empty: the host's.
+    std::string advertise;  // Where others reach it; empty: http:// and the listening address.
+    std::string fleet_key;  // What the nodes know each other by.
+    unsigned lease_s = 30;  // A node that was silent for so long is taken for lost.
 };
 
 // "127.0.0.1:8080", "[::1]:8080", "0.0.0.0:8080" or ":8080" (loopback). Throws BadConfig.
 ListenAddress parse_listen(const std::string& text);
+
+// What must be so, or not be, of the settings of a fleet. Fills in the node's name. Throws
+// BadConfig.
+void check_fleet(Config& config);
 
 // Only this host can reach it.
 bool is_loopback(const std::string& address);

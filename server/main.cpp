@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
     add_weave_command(app, common);
     add_compute_command(app, common);
     add_serve_command(app, common);
+    add_store_command(app, common);
     add_user_command(app, common);
     add_health_command(app, common);
     add_backup_command(app, common);

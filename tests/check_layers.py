@@ -15,7 +15,8 @@ MODULES = {
 # Header (regular expression) -> files (regular expressions) that may include it.
 PINNED = {
     r"nlohmann/.*": [r"fab/package/.*\.(h|cpp)", r"fab/nest/instance_io\.cpp", r"fab/export/gltf\.cpp", r"server/.*"],
-    r"httplib\.h": [r"server/http/edge\.(h|cpp)", r"server/webhook/post\.cpp", r"server/cli/.*\.cpp"],
+    r"httplib\.h": [r"server/http/edge\.(h|cpp)", r"server/webhook/post\.cpp", r"server/fleet/peers\.cpp", r"server/cli/.*\.cpp"],
+    r"libpq-fe\.h": [r"server/store/postgres/connection\.cpp"],
     r"SQLiteCpp/.*|sqlite3\.h": [r"server/store/.*\.cpp"],
     r"CLI/.*": [r"server/cli/.*\.cpp", r"server/main\.cpp"],
     r"spdlog/.*": [r"server/.*", r"drivers/.*"],

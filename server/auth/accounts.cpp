@@ -55,20 +55,36 @@ bool is_over(const Session& session, std::int64_t now_ms) {
 }  // namespace
 
 Accounts::Accounts(AccountStore& store) : store_(store) {
-    StoredAccounts stored = store.load();
+    reload();
+}
+
+void Accounts::reload() {
+    const std::scoped_lock change(changing_);
+    StoredAccounts stored = store_.load();
+    std::map<std::string, User> users;
     for (User& user : stored.users) {
-        users_.emplace(user.name, std::move(user));
-    }
-    for (ApiKey& key : stored.keys) {
-        keys_.emplace(key.id, std::move(key));
+        users.emplace(user.name, std::move(user));
     }
     const std::int64_t now = wall_clock_ms();
+    const std::scoped_lock lock(mutex_);
+    std::map<std::string, ApiKey> keys;
+    for (ApiKey& key : stored.keys) {
+        const auto known = keys_.find(key.id);
+        key.used_ms = known == keys_.end() ? key.used_ms : known->second.used_ms;
+        keys.emplace(key.id, std::move(key));
+    }
+    std::map<std::string, Session> sessions;
     for (Session& session : stored.sessions) {
+        const auto known = sessions_.find(session.token_hash);
+        // Uses are not written down: a restart, or another node's word, counts as one.
+        session.used_ms = known == sessions_.end() ? now : known->second.used_ms;
         if (!is_over(session, now)) {
-            session.used_ms = now;  // Uses are not written down: a restart counts as one.
-            sessions_.emplace(session.token_hash, std::move(session));
+            sessions.emplace(session.token_hash, std::move(session));
         }
     }
+    users_.swap(users);
+    keys_.swap(keys);
+    sessions_.swap(sessions);
 }
 
 bool Accounts::empty() const {

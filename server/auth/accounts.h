@@ -53,6 +53,9 @@ public:
 
     explicit Accounts(AccountStore& store);
 
+    // Other processes change them too: as the store has them now. Throws StoreError.
+    void reload();
+
     // Nobody has an account: on the loopback interface everything is open then.
     bool empty() const;
 

@@ -58,6 +58,7 @@ void add_health_command(CLI::App& app, const CommonOptions& common);
 void add_backup_command(CLI::App& app, const CommonOptions& common);
 void add_stock_command(CLI::App& app, const CommonOptions& common);
 void add_presets_command(CLI::App& app, const CommonOptions& common);
+void add_store_command(CLI::App& app, const CommonOptions& common);
 void add_submit_command(CLI::App& app, const CommonOptions& common);
 void add_send_command(CLI::App& app, const CommonOptions& common);
 void add_simulate_command(CLI::App& app, const CommonOptions& common);

@@ -33,6 +33,9 @@ struct ServeOptions {
     std::string config;
     std::string listen;
     std::string state;
+    std::string store;
+    std::string role;
+    std::string node;
 };
 
 Config wanted_config(const ServeOptions& options) {
@@ -44,6 +47,16 @@ Config wanted_config(const ServeOptions& options) {
         if (!options.state.empty()) {
             config.state = options.state;
         }
+        if (!options.store.empty()) {
+            config.store = options.store;
+        }
+        if (!options.node.empty()) {
+            config.node = options.node;
+        }
+        if (!options.role.empty()) {
+            config.role = node_role_named(options.role).value();
+        }
+        check_fleet(config);
         if (config.state.empty()) {
             config.state = default_state_dir();
         }
@@ -112,6 +125,12 @@ void add_serve_command(CLI::App& app, const CommonOptions&) {
     command->add_option("--config", options->config, "TOML file")->check(CLI::ExistingFile);
     command->add_option("--listen", options->listen, "ADDRESS:PORT; 127.0.0.1:8080 if not given");
     command->add_option("--state", options->state, "Folder of the database and the files");
+    command->add_option(
+        "--store", options->store,
+        "postgresql://… that a fleet shares; SQLite in the state folder if not given");
+    command->add_option("--role", options->role, "What this node does in a fleet")
+        ->check(CLI::IsMember({"all", "api", "worker", "station"}));
+    command->add_option("--node", options->node, "Its name in a fleet; the host's if not given");
     command->callback([options] { serve(*options); });
 }
 

@@ -17,8 +17,8 @@
 #include "server/config.h"
 #include "server/store/account_store.h"
 #include "server/store/ids.h"
-#include "server/store/sqlite/engine.h"
 #include "server/store/state_dir.h"
+#include "server/store/store.h"
 
 namespace leafcutter::server {
 
@@ -26,6 +26,7 @@ namespace {
 
 struct UserOptions {
     std::string state;
+    std::string store;
     std::string name;
     std::string role = "admin";
     std::string key_role = "submitter";
@@ -85,7 +86,9 @@ template <typename Act>
 void with_accounts(const UserOptions& options, Act act) {
     const StateDir folder(options.state.empty() ? default_state_dir()
                                                 : std::filesystem::path(options.state));
-    const OpenedEngine opened = open_sqlite(folder.path(), folder.path() / "backups", nullptr);
+    StoreChoice choice;
+    choice.uri = options.store;
+    const OpenedEngine opened = open_engine(folder.path(), nullptr, choice);
     AccountStore& store = opened.engine->accounts();
     Accounts accounts(store);
     try {
@@ -154,6 +157,7 @@ void add_user_command(CLI::App& app, const CommonOptions&) {
     command->require_subcommand(1);
     const auto options = std::make_shared<UserOptions>();  // Shared with the callbacks.
     command->add_option("--state", options->state, "Folder of the database and the files");
+    command->add_option("--store", options->store, "postgresql://… of a fleet, in its place");
     const auto add = [&](const char* verb, const char* help, void (*act)(const UserOptions&)) {
         CLI::App* sub = command->add_subcommand(verb, help);
         sub->callback([options, act] { act(*options); });

@@ -62,7 +62,31 @@ std::string session_token_of(const Request& request) {
     return {};
 }
 
-void identify(Accounts& accounts, Request& request) {
+namespace {
+
+// Another node passes on what somebody asked of it, and who that is.
+Caller caller_of_peer(const Request& request) {
+    const Role role =
+        role_named(request.header("x-leafcutter-role").value_or("")).value_or(Role::Nobody);
+    // Without a name it asks for itself: for files.
+    const bool itself = !request.header("x-leafcutter-role");
+    return {Caller::Proof::Key, request.header("x-leafcutter-caller").value_or("fleet"),
+            itself ? Role::Admin : role,
+            !itself && request.header("x-leafcutter-may-fire") == "yes"};
+}
+
+}  // namespace
+
+bool is_from_peer(const Request& request, std::string_view fleet_key) {
+    const auto key = fleet_key.empty() ? std::nullopt : key_in(request);
+    return key && same_secret(*key, fleet_key);
+}
+
+void identify(Accounts& accounts, std::string_view fleet_key, Request& request) {
+    if (is_from_peer(request, fleet_key)) {
+        request.caller = caller_of_peer(request);
+        return;
+    }
     if (accounts.empty()) {
         request.caller = {Caller::Proof::NoAccounts, "", Role::Admin, true};
         return;

@@ -20,9 +20,12 @@ bool is_unsafe(const Request& request);
 std::string session_token_of(const Request& request);
 
 // Sets `request.caller`, from the key (Authorization: Bearer, or X-Api-Key) or the session's
-// cookie. What is unknown or over is nobody. Throws HttpProblem (403) for a session's unsafe call
-// without its X-CSRF-Token.
-void identify(Accounts& accounts, Request& request);
+// cookie; or, with the fleet's key, as another node found out. What is unknown or over is nobody.
+// Throws HttpProblem (403) for a session's unsafe call without its X-CSRF-Token.
+void identify(Accounts& accounts, std::string_view fleet_key, Request& request);
+
+// Another node of the fleet sent it, for itself or for somebody who asked there.
+bool is_from_peer(const Request& request, std::string_view fleet_key);
 
 // Throws HttpProblem: 401 for nobody, 403 for somebody of a lesser role, or for a key that may not
 // fire.

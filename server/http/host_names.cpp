@@ -43,6 +43,8 @@ std::vector<std::string> interface_addresses() {
     return addresses;
 }
 
+}  // namespace
+
 std::string lower_host_name() {
     std::array<char, 256> name{};
     if (::gethostname(name.data(), name.size() - 1) != 0) {
@@ -54,8 +56,6 @@ std::string lower_host_name() {
     });
     return result;
 }
-
-}  // namespace
 
 std::vector<std::string> own_host_names(const std::string& listen_address) {
     std::vector<std::string> names{as_host(listen_address)};

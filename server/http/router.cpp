@@ -10,6 +10,7 @@
 #include "server/app.h"
 #include "server/http/api/handlers.h"
 #include "server/http/dashboard.h"
+#include "server/http/forward.h"
 #include "server/http/guard.h"
 #include "server/http/problem.h"
 
@@ -33,6 +34,7 @@ constexpr Route kRoutes[] = {
     {"GET", "/api/v1/jobs/{id}/events", stream_job_events, Role::Viewer},
     {"POST", "/api/v1/jobs/{id}/cuts", create_cut, Role::Operator},
     {"PUT", "/api/v1/blobs/{sha256}", put_blob, Role::Submitter},
+    {"GET", "/api/v1/blobs/{sha256}", show_blob, Role::Admin},
     {"GET", "/api/v1/cuts", list_cuts, Role::Viewer},
     {"GET", "/api/v1/cuts/{id}", show_cut, Role::Viewer},
     {"POST", "/api/v1/cuts/{id}/start", start_cut, Role::Operator, Beam::MayFire},
@@ -66,6 +68,11 @@ constexpr Route kRoutes[] = {
     {"GET", "/api/v1/queue", show_queue, Role::Viewer},
     {"POST", "/api/v1/queue/pause", pause_queue, Role::Operator},
     {"POST", "/api/v1/queue/resume", resume_queue, Role::Operator},
+    {"GET", "/api/v1/fleet", show_fleet, Role::Viewer},
+    {"POST", "/api/v1/fleet/{id}/pause", pause_node, Role::Operator},
+    {"POST", "/api/v1/fleet/{id}/drain", drain_node, Role::Operator},
+    {"POST", "/api/v1/fleet/{id}/resume", resume_node, Role::Operator},
+    {"DELETE", "/api/v1/fleet/{id}", forget_node, Role::Admin},
     {"GET", "/api/v1/retention", show_retention, Role::Viewer},
     {"PUT", "/api/v1/retention", change_retention, Role::Admin},
     {"GET", "/api/v1/backups", list_backups, Role::Admin},
@@ -129,7 +136,10 @@ bool matches(std::string_view pattern, std::string_view path, Request& request) 
 }
 
 Response route(App& app, Request& request) {
-    identify(app.accounts(), request);
+    identify(app.accounts(), app.peers().key(), request);
+    if (request.caller.proof == Caller::Proof::None && app.look_again_for_accounts(request)) {
+        identify(app.accounts(), app.peers().key(), request);
+    }
     const std::string method = request.method == "HEAD" ? "GET" : request.method;
     std::set<std::string> allowed;
     for (const Route& each : kRoutes) {
@@ -138,7 +148,8 @@ Response route(App& app, Request& request) {
         }
         if (each.method == method) {
             admit(request, each.least, each.beam);
-            return each.handler(app, request);
+            auto there = answer_elsewhere(app, request, each.pattern);
+            return there ? *std::move(there) : each.handler(app, request);
         }
         allowed.emplace(each.method);
     }

@@ -108,7 +108,7 @@ ComputeRunner::ComputeRunner(Store& store,
       compute_(std::move(compute)),
       options_(options),
       on_progress_(std::move(on_progress)) {
-    for (unsigned i = 0; i < std::max(1U, options.workers); ++i) {
+    for (unsigned i = 0; i < options.workers; ++i) {
         workers_.emplace_back([this](const std::stop_token& stop) { loop(stop); });
     }
 }
@@ -134,6 +134,15 @@ void ComputeRunner::stop_job(const std::string& id) {
     if (found != running_.end()) {
         found->second.stop.request_stop();
     }
+}
+
+std::vector<JobLease> ComputeRunner::running() const {
+    const std::scoped_lock lock(mutex_);
+    std::vector<JobLease> jobs;
+    for (const auto& [id, running] : running_) {
+        jobs.push_back({id, running.fence});
+    }
+    return jobs;
 }
 
 std::optional<ComputeProgress> ComputeRunner::progress(const std::string& id) const {
@@ -172,6 +181,7 @@ bool ComputeRunner::compute_next(const std::stop_token& stop) {
     {
         const std::scoped_lock lock(mutex_);
         running_[job->id].progress = {"read", 0.0};
+        running_[job->id].fence = job->fence;
     }
     bool settled = true;
     try {
@@ -240,7 +250,8 @@ void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
         spdlog::info("job {}: failed: {}", job.id, error.what());
         store_.jobs.fail({job.id, job.fence}, failure_of(error));
     } catch (...) {  // A thread's top: whatever it was, only this job fails.
-        store_.jobs.fail({job.id, job.fence}, {"internal", "internal", "the computation broke down"});
+        store_.jobs.fail({job.id, job.fence},
+                         {"internal", "internal", "the computation broke down"});
     }
 }
 
@@ -253,7 +264,11 @@ std::string ComputeRunner::params_of(const JobRecord& job) const {
 
 void ComputeRunner::finish(const JobRecord& job, const ComputeOutput& output) {
     crash_point("compute.before-result");
-    const bool kept = store_.jobs.finish({job.id, job.fence}, stored_result(store_.blobs, output));
+    const ComputedJob result = stored_result(store_.blobs, output);
+    for (const ArtifactRecord& file : result.artifacts) {
+        store_.blobs.share(file.sha256);  // This node may not be there when it is wanted.
+    }
+    const bool kept = store_.jobs.finish({job.id, job.fence}, result);
     spdlog::info("job {}: {}", job.id, kept ? "ready" : "cancelled at the last moment");
 }
 

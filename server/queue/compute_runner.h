@@ -70,7 +70,7 @@ public:
 };
 
 struct ComputeOptions {
-    unsigned workers = 1;          // Jobs at the same time.
+    unsigned workers = 1;          // Jobs at the same time; 0: none is computed here.
     unsigned threads_per_job = 1;  // Budget of each.
 };
 
@@ -98,6 +98,10 @@ public:
     // Ends the work on a job that the store no longer calls computing.
     void stop_job(const std::string& id);
 
+    // The jobs in work here, as they were claimed.
+    std::vector<JobLease> running() const;
+    std::size_t workers() const { return workers_.size(); }
+
     // Nothing if it is not in work.
     std::optional<ComputeProgress> progress(const std::string& id) const;
 
@@ -106,6 +110,7 @@ private:
         std::stop_source stop;
         ComputeProgress progress;
         std::chrono::steady_clock::time_point told;
+        std::int64_t fence = 0;
     };
 
     void loop(const std::stop_token& stop);

@@ -30,12 +30,24 @@ std::optional<std::string> DeviceRunner::current_cut() const {
     return current_ ? std::optional(current_->id) : std::nullopt;
 }
 
+std::optional<CutRecord> DeviceRunner::cut_in_work() const {
+    const std::scoped_lock lock(mutex_);
+    const bool begun = current_ && current_->state != CutState::Armed;
+    return begun ? current_ : std::nullopt;
+}
+
 std::optional<CutProgress> DeviceRunner::live_progress(const std::string& cut) const {
     const std::scoped_lock lock(mutex_);
     return current_ && current_->id == cut ? std::optional(progress_) : std::nullopt;
 }
 
+bool DeviceRunner::is_cutting() const {
+    const std::scoped_lock settled(settling_);
+    return current_cut().has_value();
+}
+
 bool DeviceRunner::is_ready() const {
+    const std::scoped_lock settled(settling_);
     {
         const std::scoped_lock lock(mutex_);
         if (current_ || frame_program_ || framing_) {
@@ -176,7 +188,7 @@ std::shared_ptr<drivers::Device> DeviceRunner::device() const {
 }
 
 std::shared_ptr<drivers::Device> DeviceRunner::device_for_hand_work() const {
-    if (current_cut()) {
+    if (is_cutting()) {
         throw drivers::Refused("a cut is in work on this machine: wait for its end or abort it");
     }
     return connected_device();

@@ -171,14 +171,15 @@ void DeviceRunner::settle(const drivers::JobProgress& progress) {
         cut = current_.value();
     }
     close_beam(progress);
-    write_outcome(cut, progress);
-    ended_beam_.reset();
-    trouble_.clear();
     {
+        const std::scoped_lock settling(settling_);
+        write_outcome(cut, progress);
         const std::scoped_lock lock(mutex_);
         current_.reset();
         abort_wanted_ = false;
     }
+    ended_beam_.reset();
+    trouble_.clear();
     look_at_queue_ = queue_changed_ = true;
     hooks_.on_cut(cut.id);
 }
@@ -195,6 +196,7 @@ void DeviceRunner::close_beam(const drivers::JobProgress& progress) {
 }
 
 void DeviceRunner::write_outcome(const CutRecord& cut, const drivers::JobProgress& progress) {
+    store_.cuts.reclaim(cut);  // Where the fleet had lost sight of this station.
     if (progress.outcome == JobOutcome::Done) {
         store_.cuts.finish_sheet(cut, counted(progress));
         forget_beam(store_, cut);

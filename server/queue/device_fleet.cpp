@@ -14,6 +14,9 @@ DeviceFleet::DeviceFleet(Store& store, DeviceHooks hooks)
     : store_(store), hooks_(std::move(hooks)) {
     assess_interrupted(store_);
     for (const DeviceRecord& device : store_.devices.list()) {
+        if (!store_.has_machine(device)) {
+            continue;
+        }
         const auto& doubtful = store_.interrupted_devices;
         const bool inspect =
             std::find(doubtful.begin(), doubtful.end(), device.id) != doubtful.end();
@@ -49,7 +52,7 @@ std::vector<std::shared_ptr<DeviceRunner>> DeviceFleet::all() const {
 
 void DeviceFleet::check_idle(const std::string& id) const {
     const std::shared_ptr<DeviceRunner> runner = find(id);
-    if (runner && runner->current_cut()) {
+    if (runner && runner->is_cutting()) {
         throw drivers::Refused("a cut is in work on this machine: wait for its end or abort it");
     }
 }
@@ -85,7 +88,7 @@ void DeviceFleet::remove(const std::string& id) {
 void DeviceFleet::finish_sheets() {
     const std::vector<std::shared_ptr<DeviceRunner>> runners = all();
     for (const auto& runner : runners) {
-        runner->take_no_more();
+        runner->set_appetite(DeviceRunner::Appetite::TakesNoMore);
     }
     constexpr std::chrono::milliseconds kLookEvery{100};
     for (const auto& runner : runners) {

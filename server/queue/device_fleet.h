@@ -15,7 +15,7 @@ namespace leafcutter::server {
 
 class DeviceFleet {
 public:
-    // Starts a runner for every machine of the store.
+    // Starts a runner for every machine of the store that hangs on this node.
     DeviceFleet(Store& store, DeviceHooks hooks);
 
     // Shared: a request may still use a runner that is being removed.

@@ -26,7 +26,7 @@
 namespace leafcutter::server {
 
 // What becomes of a cut in work when the daemon stops. Finish waits for the end of its sheet before
-// the runners are stopped (take_no_more()); a runner that is stopped all the same pauses.
+// the runners are stopped (set_appetite()); a runner that is stopped all the same pauses.
 enum class StopPolicy { Pause, Finish, Abort };
 
 struct DeviceHooks {
@@ -56,16 +56,20 @@ public:
 
     // The cut in work, and how far it is.
     std::optional<std::string> current_cut() const;
+    std::optional<CutRecord> cut_in_work() const;  // Begun for certain.
     std::optional<CutProgress> live_progress(const std::string& cut) const;
 
-    // The machine is idle and nothing is in work: a cut may start.
+    // The machine is idle and nothing is in work: a cut may start. Both wait where the end of a cut
+    // is just being written down: who reads there that it is over finds the machine free.
     bool is_ready() const;
+    bool is_cutting() const;
 
     // There may be an armed cut.
     void wake();
 
-    // From now on nothing new is begun; the sheet in work goes on.
-    void take_no_more() { closing_ = true; }
+    // Whether anything new is begun; the sheet in work goes on.
+    enum class Appetite { TakesMore, TakesNoMore };
+    void set_appetite(Appetite appetite) { closing_ = appetite == Appetite::TakesNoMore; }
 
     // Something was plugged in: its machine may be back.
     void look_for_machine();
@@ -142,7 +146,8 @@ private:
     std::atomic<bool> closing_{false};
     std::atomic<bool> word_given_{false};  // By a reset since the last cut began.
 
-    mutable std::mutex mutex_;  // Guards the members up to the next blank line.
+    mutable std::mutex settling_;  // Held from before a cut's end is on disk until it is let go.
+    mutable std::mutex mutex_;     // Guards the members up to the next blank line.
     std::condition_variable_any nudged_;
     // Shared: a caller may be inside the device while the runner drops it.
     std::shared_ptr<drivers::Device> device_;

@@ -158,7 +158,8 @@ MappedBlob::~MappedBlob() {
     }
 }
 
-Blobs::Blobs(fs::path folder) : folder_(std::move(folder)) {
+Blobs::Blobs(fs::path folder, Others others)
+    : folder_(std::move(folder)), others_(std::move(others)) {
     fs::create_directories(folder_ / "incoming");
     for (const auto& left_over : fs::directory_iterator(folder_ / "incoming")) {
         std::error_code error;
@@ -192,7 +193,26 @@ fs::path Blobs::path_of(const std::string& sha256) const {
     return folder_ / sha256.substr(0, 2) / sha256;
 }
 
+bool Blobs::fetch(const std::string& sha256) const {
+    return others_.fetch && others_.fetch(sha256, *this);
+}
+
+void Blobs::share(const std::string& sha256) const {
+    if (others_.share) {
+        others_.share(sha256, *this);
+    }
+}
+
+bool Blobs::is_here(const std::string& sha256) const {
+    return size_here(sha256).has_value();
+}
+
 std::optional<std::int64_t> Blobs::size(const std::string& sha256) const {
+    const auto here = size_here(sha256);
+    return here || !fetch(sha256) ? here : size_here(sha256);
+}
+
+std::optional<std::int64_t> Blobs::size_here(const std::string& sha256) const {
     struct stat found {};
     if (::stat(path_of(sha256).c_str(), &found) != 0) {
         return std::nullopt;
@@ -202,10 +222,14 @@ std::optional<std::int64_t> Blobs::size(const std::string& sha256) const {
 
 FileHandle Blobs::open(const std::string& sha256) const {
     FileHandle handle(::open(path_of(sha256).c_str(), O_RDONLY | O_CLOEXEC));
-    if (handle.fd() < 0) {
+    if (handle.fd() >= 0) {
+        return handle;
+    }
+    FileHandle fetched(fetch(sha256) ? ::open(path_of(sha256).c_str(), O_RDONLY | O_CLOEXEC) : -1);
+    if (fetched.fd() < 0) {
         throw std::out_of_range("blob " + sha256 + " is missing");
     }
-    return handle;
+    return fetched;
 }
 
 std::unique_ptr<MappedBlob> Blobs::map(const std::string& sha256) const {

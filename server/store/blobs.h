@@ -91,8 +91,17 @@ private:
 
 class Blobs {
 public:
+    // Ways to other nodes that have blobs too; both may take seconds.
+    struct Others {
+        // Gets what is missing here and puts it in; false: nobody has it.
+        std::function<bool(const std::string& sha256, const Blobs& here)> fetch;
+
+        // Lets another one have it, as a copy beyond this host.
+        std::function<void(const std::string& sha256, const Blobs& here)> share;
+    };
+
     // Creates the folder and sweeps temporary files that a dead process left behind.
-    explicit Blobs(std::filesystem::path folder);
+    explicit Blobs(std::filesystem::path folder, Others others = {});
 
     std::unique_ptr<BlobWriter> begin() const;
     BlobId put(std::string_view bytes) const;
@@ -100,7 +109,13 @@ public:
     // A file without a name, gone when it is closed. Throws BlobWriteFailed.
     FileHandle scratch() const;
 
-    // Nothing if there is none of that name.
+    // Gives a copy to others, if there are any.
+    void share(const std::string& sha256) const;
+
+    // Whether it lies on this host.
+    bool is_here(const std::string& sha256) const;
+
+    // What is not here comes from others, if they have it. Nothing if there is none of that name.
     std::optional<std::int64_t> size(const std::string& sha256) const;
 
     // Throws std::out_of_range if there is none.
@@ -117,8 +132,11 @@ public:
 
 private:
     std::filesystem::path path_of(const std::string& sha256) const;
+    std::optional<std::int64_t> size_here(const std::string& sha256) const;
+    bool fetch(const std::string& sha256) const;
 
     std::filesystem::path folder_;
+    Others others_;
 };
 
 }  // namespace leafcutter::server

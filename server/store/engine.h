@@ -73,8 +73,4 @@ struct OpenedEngine {
     bool restored = false;  // It is what a backup holds: older than what happened since.
 };
 
-// The engine of a state folder, opened or created. `after_commit` is called by a thread of the
-// engine and must not wait. Throws DatabaseUnusable.
-OpenedEngine open_engine(const std::filesystem::path& folder, std::function<void()> after_commit);
-
 }  // namespace leafcutter::server

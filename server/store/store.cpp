@@ -5,19 +5,29 @@
 #include <fmt/format.h>
 
 #include "server/store/ids.h"
+#include "server/store/postgres/engine.h"
 #include "server/store/sqlite/engine.h"
 #include "server/store/sqlite/rescue.h"
 
 namespace leafcutter::server {
 
-OpenedEngine open_engine(const std::filesystem::path& folder, std::function<void()> after_commit) {
-    return open_sqlite(folder, folder / "backups", std::move(after_commit));
+OpenedEngine open_engine(const std::filesystem::path& folder,
+                         std::function<void()> after_commit,
+                         const StoreChoice& choice) {
+    if (choice.uri.empty()) {
+        return open_sqlite(folder, folder / "backups", std::move(after_commit), choice.scope);
+    }
+    std::filesystem::create_directories(folder / "backups");
+    return open_postgres(choice.uri, choice.scope, {std::move(after_commit), choice.on_passing});
 }
 
-Store::Store(const std::filesystem::path& path, std::function<void()> after_commit)
+Store::Store(const std::filesystem::path& path,
+             std::function<void()> after_commit,
+             StoreChoice choice)
     : folder(path),
+      choice_(std::move(choice)),
       engine_(open_engine(std::move(after_commit))),
-      blobs(path / "blobs"),
+      blobs(path / "blobs", choice_.others),
       jobs(engine_->jobs()),
       cuts(engine_->cuts()),
       devices(engine_->devices()),
@@ -26,12 +36,23 @@ Store::Store(const std::filesystem::path& path, std::function<void()> after_comm
       presets(engine_->presets()),
       settings(engine_->settings()),
       events(engine_->events()),
-      accounts(engine_->accounts()) {
-    if (!trouble().empty()) {
-        return;
+      accounts(engine_->accounts()),
+      fleet(engine_->fleet()) {
+    if (trouble().empty()) {
+        take_up();
     }
-    jobs.recover();
-    interrupted_devices = cuts.recover();
+}
+
+void Store::take_up() {
+    if (choice_.adopts) {
+        fleet.adopt_machines();
+    }
+    if (choice_.computes) {
+        jobs.recover();
+    }
+    if (choice_.has_machines) {
+        interrupted_devices = cuts.recover();
+    }
     if (restored_) {
         // What the backup calls waiting may be cut by now: somebody has to look first.
         jobs.pause_queue("restored from a backup: see what was done since, then resume");
@@ -39,7 +60,7 @@ Store::Store(const std::filesystem::path& path, std::function<void()> after_comm
 }
 
 std::unique_ptr<Engine> Store::open_engine(std::function<void()> after_commit) {
-    OpenedEngine opened = server::open_engine(folder.path(), std::move(after_commit));
+    OpenedEngine opened = server::open_engine(folder.path(), std::move(after_commit), choice_);
     notice_ = std::move(opened.notice);
     restored_ = opened.restored;
     return std::move(opened.engine);

@@ -17,15 +17,29 @@
 
 namespace leafcutter::server {
 
+// Which rows a store works with, and what of them is its business.
+struct StoreChoice {
+    std::string uri;  // "postgresql://…", shared with others; empty: SQLite in the folder.
+    NodeScope scope;
+    bool computes = true;      // Takes jobs up.
+    bool has_machines = true;  // Those of its node, or all of a daemon alone.
+    bool adopts = false;       // Machines that no node has yet become its own.
+    std::function<void(const std::string& text)> on_passing;  // As Engine::pass_on() of anybody.
+    Blobs::Others others;
+};
+
 class Store {
 public:
     // Locks the folder, opens, migrates and recovers. `after_commit` is called by the engine's
     // thread and must not wait. Throws StateDirUnusable, DatabaseUnusable.
-    Store(const std::filesystem::path& path, std::function<void()> after_commit);
+    Store(const std::filesystem::path& path,
+          std::function<void()> after_commit,
+          StoreChoice choice = {});
 
     const StateDir folder;
 
 private:
+    const StoreChoice choice_;
     std::string notice_;  // Filled while engine_ is opened.
     bool restored_ = false;
     const std::unique_ptr<Engine> engine_;
@@ -41,7 +55,15 @@ public:
     Settings& settings;
     EventLog& events;
     AccountStore& accounts;
+    FleetStore& fleet;
     std::vector<std::string> interrupted_devices;  // Whose cut a dead daemon left in mid-beam.
+
+    // The machine hangs on this node.
+    bool has_machine(const DeviceRecord& device) const {
+        return choice_.has_machines && device.station == choice_.scope.node;
+    }
+
+    void pass_on(const std::string& text) { engine_->pass_on(text); }
 
     // Why it takes no changes; empty: it does.
     std::string trouble() const { return engine_->trouble(); }
@@ -69,6 +91,13 @@ public:
 
 private:
     std::unique_ptr<Engine> open_engine(std::function<void()> after_commit);
+    void take_up();
 };
+
+// The engine of the choice; SQLite's rows and all backups are in the folder. `after_commit` is
+// called by a thread of the engine and must not wait. Throws DatabaseUnusable.
+OpenedEngine open_engine(const std::filesystem::path& folder,
+                         std::function<void()> after_commit,
+                         const StoreChoice& choice);
 
 }  // namespace leafcutter::server

@@ -10,7 +10,7 @@ const kQuads = { columns: 200, rows: 100 };
 const most = Number(process.argv[2] ?? 250);
 
 const server = await startFakeServer();
-const made = torusPackage({ major: 300, minor: 110, ...kQuads });
+const made = torusPackage(kQuads);
 const job = server.daemon.addJob({ name: 'large', params: {}, file: { name: 'large.off', bytes: 1, sha256: '0'.repeat(64) } });
 server.daemon.finish(job);
 server.daemon.packages.set(job.id, made);

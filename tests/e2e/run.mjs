@@ -217,6 +217,10 @@ step('the sheet zooms and comes back', async () => {
   await until(view, (now) => now !== whole, 'a part of the sheet');
   await desk.page.locator('.sheets').getByRole('button', { name: 'Whole sheet' }).click();
   await until(view, (now) => now === whole, 'the whole sheet');
+  await desk.page.locator('svg.sheet').focus();
+  await desk.page.keyboard.press('+');
+  await until(view, (now) => now !== whole, 'a part of the sheet, by keyboard');
+  await desk.page.locator('.sheets').getByRole('button', { name: 'Whole sheet' }).click();
 });
 
 step('the package can be downloaded', async () => {
@@ -576,4 +580,18 @@ test('dark looks as finished as light', async () => {
   await picture(dark.page, 'new-dark');
   assert.deepEqual(dark.faults, []);
   await dark.close();
+});
+
+test('a node of a fleet is drained and taken up again', async (context) => {
+  if (target.made !== 'fake') return context.skip('a daemon started here works alone');
+  const { page, faults, close } = await openPage(browser, `${target.url}/#/machines`);
+  const node = page.locator('.fleet-node', { hasText: 'attic' });
+  await node.getByRole('button', { name: 'Drain' }).click();
+  await node.getByText('finished').waitFor();
+  assert.deepEqual(await axeFaults(page), []);
+  await picture(page, 'fleet-light');
+  await node.getByRole('button', { name: 'Go on' }).click();
+  await node.getByText('at work').waitFor();
+  assert.deepEqual(faults, []);
+  return close();
 });

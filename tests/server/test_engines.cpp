@@ -641,7 +641,7 @@ const EngineKind kSqlite{"sqlite",
 std::unique_ptr<Engine> open_in_postgres(const std::filesystem::path& folder,
                                          const NodeScope& scope) {
     std::string space = "t" + sha256_of(folder.string()).substr(0, 16);
-    test::PgServer& server = *test::PgServer::shared();
+    test::PgServer& server = test::PgServer::shared();
     server.create_space(space);
     auto engine = open_postgres(server.uri(space), scope, {}).engine;
     if (std::filesystem::exists(folder / "leafcutter.db")) {
@@ -657,7 +657,7 @@ const EngineKind kPostgres{"postgres", open_in_postgres,
 
 std::vector<EngineKind> kinds() {
     std::vector<EngineKind> kinds{kSqlite};
-    if (test::PgServer::shared() != nullptr) {
+    if (test::PgServer::is_installed()) {
         kinds.push_back(kPostgres);
     }
     return kinds;

@@ -3,11 +3,8 @@
 
 #pragma once
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <unistd.h>
@@ -18,12 +15,12 @@ namespace leafcutter::test {
 
 class PgServer {
 public:
-    // Null: Debian's PostgreSQL is not installed here.
-    static PgServer* shared() {
-        static const std::unique_ptr<PgServer> server =
-            std::filesystem::exists(binaries() + "/initdb") ? std::make_unique<PgServer>()
-                                                            : nullptr;
-        return server.get();
+    // Debian's packages.
+    static bool is_installed() { return std::filesystem::exists(binaries() + "/initdb"); }
+
+    static PgServer& shared() {
+        static PgServer server;
+        return server;
     }
 
     PgServer() {

@@ -33,6 +33,19 @@ const kEntries = Array.from({ length: 8 }, (_, k) => ({
   seq: 8 - k, at: `2026-01-07T10:0${8 - k}:00Z`, user: k % 3 === 0 ? null : 'ada', remote: '192.0.2.7', action: `POST /api/v1/cuts/c_${k}/start`, note: '', status: k % 4 === 0 ? 409 : 202,
 }));
 const kSession = { accounts: false, authenticated: true, user: null, role: null, may_fire: true, csrf_token: null };
+const kNodes = ['bench', 'attic'].map((id, k) => ({
+  id, role: k === 0 ? 'all' : 'worker', state: 'active', version: '0.1.0', silent_s: 1, machines: k === 0 ? ['sim'] : [], workers: 2, computing: k, cutting: 0,
+  actions: ['pause', 'drain'],
+}));
+const kFleet = { alone: false, node: 'bench', lease_s: 30, nodes: kNodes, machine_leases: [], claims: [] };
+const kNodeStates = { pause: 'paused', drain: 'drained', resume: 'active' };
+
+function commandNode(id, command) {
+  const node = kNodes.find((one) => one.id === id);
+  if (node === undefined) throw new Refusal(404, 'no-such-node', 'there is no node of that name');
+  return Object.assign(node, { state: kNodeStates[command], actions: command === 'resume' ? ['pause', 'drain'] : ['resume'] });
+}
+
 // Pages that only show what is there; a whole daemon keeps it.
 const kShown = {
   '/session': kSession,
@@ -42,6 +55,7 @@ const kShown = {
   '/presets': { presets: [{ id: 'fine', name: 'Fine', params: { grid: { strip_width_mm: 6 }, weave: { pattern: 'twill-2x2' } } }] },
   '/users': { users: [kUser, { ...kUser, name: 'eve', role: 'operator' }], next_cursor: null },
   '/keys': { keys: [kKey], next_cursor: null },
+  '/fleet': kFleet,
   '/audit': { entries: kEntries, next_cursor: null },
 };
 
@@ -144,7 +158,8 @@ const kRoutes = [
   ['GET', /^\/queue$/, (d, _, q, r) => sendJson(r, 200, d.queue())],
   ['POST', /^\/queue\/(pause|resume)$/, (d, [word], q, r) => { d.paused = word === 'pause'; sendJson(r, 200, d.queue()); }],
   ['GET', /^\/devices\/[^/]+\/settings$/, (d, _, q, r) => sendJson(r, 200, { settings: [{ key: '$110', value: 8000, name: 'X maximum rate' }] })],
-  ['GET', /^\/(session|version|ports|stock|presets|users|keys|audit)$/, (d, [name], q, r) => sendJson(r, 200, kShown[`/${name}`])],
+  ['GET', /^\/(session|version|ports|stock|presets|users|keys|audit|fleet)$/, (d, [name], q, r) => sendJson(r, 200, kShown[`/${name}`])],
+  ['POST', /^\/fleet\/([^/]+)\/(pause|drain|resume)$/, (d, [id, word], q, r) => sendJson(r, 202, commandNode(id, word))],
   ['GET', /^\/events$/, (d, _, q, r) => serveEvents(d, q, r)],
 ];
 

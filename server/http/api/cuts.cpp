@@ -157,53 +157,57 @@ Response tell_runner(App& app, const Request& request, const std::string& action
     return json_response(cut_json(app, cut), 202);
 }
 
-using Runners = std::vector<std::shared_ptr<DeviceRunner>>;
+using Machines = std::vector<Machine>;
 
-Runners one_runner(App& app, const json& body) {
+Machines one_machine(App& app, const json& body) {
     const auto device = body.find("device");
     if (device == body.end() || !device->is_string()) {
         throw HttpProblem(422, "bad-field", "device: name the machine");
     }
-    auto runner = app.fleet().find(device->get<std::string>());
-    if (!runner) {
+    auto machine = find_machine(app, device->get<std::string>());
+    if (!machine) {
         throw HttpProblem(422, "no-such-device", "device: there is no machine of that id");
     }
-    return {std::move(runner)};
+    return {*std::move(machine)};
 }
 
 // "auto": every machine that is connected.
-Runners runners_in(App& app, const json& wanted) {
-    Runners runners;
+Machines machines_in(App& app, const json& wanted) {
+    Machines machines;
     if (wanted == "auto") {
-        for (auto& runner : app.fleet().all()) {
-            if (runner->status().state != drivers::MachineState::Disconnected) {
-                runners.push_back(runner);
+        for (Machine& machine : all_machines(app)) {
+            if (machine.connected) {
+                machines.push_back(std::move(machine));
             }
         }
-        if (runners.empty()) {
+        if (machines.empty()) {
             throw HttpProblem(409, "device-not-ready", "no machine is connected");
         }
-        return runners;
+        return machines;
     }
     if (!wanted.is_array() || wanted.empty()) {
         throw HttpProblem(422, "bad-field", "devices: must be a list of machines, or \"auto\"");
     }
     for (const json& id : wanted) {
-        auto runner = id.is_string() ? app.fleet().find(id.get<std::string>()) : nullptr;
-        if (!runner || std::find(runners.begin(), runners.end(), runner) != runners.end()) {
+        auto machine = id.is_string() ? find_machine(app, id.get<std::string>()) : std::nullopt;
+        const bool again =
+            machine && std::any_of(machines.begin(), machines.end(), [&](const Machine& other) {
+                return other.record.id == machine->record.id;
+            });
+        if (!machine || again) {
             throw HttpProblem(
                 422, "no-such-device",
                 fmt::format("devices: there is no machine {}, or it is there twice", id.dump()));
         }
-        runners.push_back(std::move(runner));
+        machines.push_back(*std::move(machine));
     }
-    return runners;
+    return machines;
 }
 
-std::vector<CutPlace> places_of(App& app, const Runners& runners) {
+std::vector<CutPlace> places_of(App& app, const Machines& machines) {
     std::vector<CutPlace> places;
-    for (const auto& runner : runners) {
-        CutPlace place{runner->record().id, runner->record().bed_mm};
+    for (const Machine& machine : machines) {
+        CutPlace place{machine.record.id, machine.record.bed_mm};
         for (const CutRecord& cut : app.store().cuts.open_on(place.device)) {
             const auto job = app.store().jobs.find(cut.job);
             for (std::size_t i = cut.position; job && i < cut.sheets.size(); ++i) {
@@ -250,18 +254,21 @@ Response create_cut(App& app, Request& request) {
     const JobRecord job = find_job(app, request);
     const json body = read_json_object(request);
     const bool spread = body.count("devices") != 0;
-    const auto runners = spread ? runners_in(app, body.at("devices")) : one_runner(app, body);
-    for (const auto& runner : runners) {
-        if (runner->record().auto_start) {
+    const Machines machines =
+        spread ? machines_in(app, body.at("devices")) : one_machine(app, body);
+    for (const Machine& machine : machines) {
+        if (machine.record.auto_start) {
             admit(request, Role::Operator, Beam::MayFire);
         }
     }
     const std::vector<CutWish> wishes =
-        spread ? spread_sheets(wanted_sheets(job, sheets_in(body)), places_of(app, runners))
-               : std::vector<CutWish>{{runners.front()->record().id, sheets_in(body)}};
+        spread ? spread_sheets(wanted_sheets(job, sheets_in(body)), places_of(app, machines))
+               : std::vector<CutWish>{{machines.front().record.id, sheets_in(body)}};
     const std::vector<CutRecord> cuts = app.store().cuts.add(job.id, wishes);
-    for (const auto& runner : runners) {
-        runner->wake();
+    for (const Machine& machine : machines) {
+        if (machine.runner) {  // Other nodes hear of it from the database.
+            machine.runner->wake();
+        }
     }
     json made = json::array();
     for (const CutRecord& cut : cuts) {

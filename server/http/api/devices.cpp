@@ -68,7 +68,7 @@ DeviceRecord device_in(const json& body,
         } else if (key == "name" || key == "uri" || key == "auto_start" || key == "bed_mm") {
             throw bad_field(key, "has the wrong type");
         } else if (key != "id" && key != "status" && key != "cut" && key != "actions" &&
-                   key != "console") {
+                   key != "console" && key != "station") {
             throw bad_field(key, "there is no such field");
         }
     }
@@ -186,19 +186,24 @@ Response tagged(const DeviceRunner& runner, int status) {
 
 Response list_devices(App& app, Request& request) {
     json devices = json::array();
-    for (const auto& runner : app.fleet().all()) {
-        devices.push_back(device_json(*runner));
+    for (const Machine& machine : all_machines(app)) {
+        devices.push_back(device_json(app, machine));
     }
     return json_response(paged("devices", std::move(devices), "id", request));
 }
 
 Response show_device(App& app, Request& request) {
+    const auto machine = find_machine(app, request.capture("id"));
+    if (machine && !machine->runner) {
+        return tagged_response(device_json(app, *machine), changeable(machine->record), 200);
+    }
     return tagged(*find_device(app, request), 200);
 }
 
 Response put_device(App& app, Request& request) {
     const std::string& id = request.capture("id");
-    const DeviceRecord wanted = device_in(read_json_object(request), id, app.burn_logs());
+    DeviceRecord wanted = device_in(read_json_object(request), id, app.burn_logs());
+    wanted.station = app.self() == nullptr ? "" : app.self()->id;
     bool is_new = true;
     const ConditionalChange change(request, [&]() -> std::optional<json> {
         const auto known = app.fleet().find(id);

@@ -16,6 +16,7 @@ Response show_job(App& app, Request& request);
 Response delete_job(App& app, Request& request);
 Response recompute_job(App& app, Request& request);
 Response put_blob(App& app, Request& request);
+Response show_blob(App& app, Request& request);
 
 // queue.cpp
 Response show_queue(App& app, Request& request);
@@ -101,6 +102,13 @@ Response list_audit(App& app, Request& request);
 // octoprint.cpp
 Response octoprint_version(App& app, Request& request);
 Response octoprint_upload(App& app, Request& request);
+
+// fleet.cpp
+Response show_fleet(App& app, Request& request);
+Response pause_node(App& app, Request& request);
+Response drain_node(App& app, Request& request);
+Response resume_node(App& app, Request& request);
+Response forget_node(App& app, Request& request);
 
 // events.cpp
 Response stream_events(App& app, Request& request);

@@ -111,6 +111,7 @@ AddedJob take_job(App& app, const Request& request, NewJob job) {
     check_params(app, job);
     job.name = job.name.empty() ? job.file.name : job.name;
     job.name.resize(std::min(job.name.size(), kLongestName));
+    app.store().blobs.share(job.file.sha256);  // An accepted job outlives this host.
     const AddedJob added = app.store().jobs.add(job, key_of(request, job));
     if (!added.replayed) {
         app.compute().wake();
@@ -196,6 +197,19 @@ Response recompute_job(App& app, Request& request) {
     return accept(app, request, std::move(job));
 }
 
+Response show_blob(App& app, Request& request) {
+    const std::string& wanted = request.capture("sha256");
+    const Blobs& blobs = app.store().blobs;
+    if (!is_sha256(wanted) || !blobs.is_here(wanted)) {  // Asking others is the asker's business.
+        throw HttpProblem(404, "no-blob", "there is no blob of that name here");
+    }
+    Response response;
+    response.content_type = "application/octet-stream";
+    auto file = std::make_shared<FileHandle>(blobs.open(wanted));
+    response.file = FilePart{std::move(file), 0, blobs.size(wanted).value_or(0)};
+    return response;
+}
+
 Response put_blob(App& app, Request& request) {
     const std::string& wanted = request.capture("sha256");
     if (!is_sha256(wanted)) {
@@ -203,7 +217,7 @@ Response put_blob(App& app, Request& request) {
     }
     Response response;
     std::array<char, 65536> piece;
-    if (app.store().blobs.size(wanted)) {
+    if (app.store().blobs.is_here(wanted)) {
         while (request.body.read(piece) > 0) {  // Known already; the bytes have to go somewhere.
         }
         response.status = 204;

@@ -55,6 +55,44 @@ JobRecord find_job(App& app, const Request& request) {
     return *std::move(job);
 }
 
+namespace {
+
+Machine machine_here(std::shared_ptr<DeviceRunner> runner) {
+    const bool connected = runner->status().state != drivers::MachineState::Disconnected;
+    return {runner->record(), std::move(runner), connected};
+}
+
+Machine machine_elsewhere(App& app, DeviceRecord record) {
+    const auto view = app.remote().find("device", record.id);
+    return {std::move(record), nullptr, view && view->value("connected", false)};
+}
+
+}  // namespace
+
+std::optional<Machine> find_machine(App& app, const std::string& id) {
+    if (auto runner = app.fleet().find(id)) {
+        return machine_here(std::move(runner));
+    }
+    auto record = app.self() == nullptr ? std::nullopt : app.store().devices.find(id);
+    return record ? std::optional(machine_elsewhere(app, *std::move(record))) : std::nullopt;
+}
+
+std::vector<Machine> all_machines(App& app) {
+    std::vector<Machine> machines;
+    if (app.self() == nullptr) {
+        for (auto& runner : app.fleet().all()) {
+            machines.push_back(machine_here(std::move(runner)));
+        }
+        return machines;
+    }
+    for (DeviceRecord& record : app.store().devices.list()) {
+        auto runner = app.fleet().find(record.id);
+        machines.push_back(runner ? machine_here(std::move(runner))
+                                  : machine_elsewhere(app, std::move(record)));
+    }
+    return machines;
+}
+
 CutRecord find_cut(App& app, const Request& request) {
     auto cut = app.store().cuts.find(request.capture("id"));
     if (!cut) {

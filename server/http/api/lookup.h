@@ -14,6 +14,7 @@
 namespace leafcutter::server {
 
 class App;
+class DeviceRunner;
 
 Response json_response(const nlohmann::json& value, int status = 200);
 
@@ -31,5 +32,15 @@ int limit_in(const Request& request);
 // Of the route's {id}. Throws HttpProblem (404).
 JobRecord find_job(App& app, const Request& request);
 CutRecord find_cut(App& app, const Request& request);
+
+// A machine of this node, or one that the fleet has elsewhere.
+struct Machine {
+    DeviceRecord record;
+    std::shared_ptr<DeviceRunner>
+        runner;  // Null: it hangs on another node. Shared as DeviceFleet's.
+    bool connected = false;
+};
+std::optional<Machine> find_machine(App& app, const std::string& id);
+std::vector<Machine> all_machines(App& app);  // By id.
 
 }  // namespace leafcutter::server

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "server/app.h"
 #include "server/http/api/cut_steps.h"
+#include "server/http/api/lookup.h"
 #include "server/http/json_body.h"
 #include "server/store/ids.h"
 
@@ -45,10 +47,17 @@ std::vector<std::string> job_actions(const JobRecord& job) {
     return actions;
 }
 
+bool is_ready(App& app, const std::string& device) {
+    if (const auto runner = app.fleet().find(device)) {
+        return runner->is_ready();
+    }
+    const auto elsewhere = app.remote().find("device", device);
+    return elsewhere && elsewhere->value("ready", false);
+}
+
 // A cut may be let loose: the machine stands idle and no other cut has it.
 bool may_fire(App& app, const CutRecord& cut) {
-    const auto runner = app.fleet().find(cut.device);
-    if (!runner || !runner->is_ready()) {
+    if (!is_ready(app, cut.device)) {
         return false;
     }
     const std::vector<CutRecord> open = app.store().cuts.open_on(cut.device);
@@ -102,6 +111,12 @@ json beam_json(const CutRecord& cut) {
 
 json progress_json(App& app, const JobRecord& job) {
     const auto running = app.compute().progress(job.id);
+    const auto elsewhere = job.state == JobState::Computing && !running
+                               ? app.remote().find("job", job.id)
+                               : std::nullopt;
+    if (elsewhere && elsewhere->contains("progress")) {
+        return elsewhere->at("progress");
+    }
     const bool finished = job.state == JobState::Ready || job.state == JobState::Done;
     return {{"stage", running ? running->stage : ""},
             {"fraction", running    ? running->fraction
@@ -119,6 +134,10 @@ json status_json(const drivers::DeviceStatus& status) {
             {"alarm_code", status.alarm_code},
             {"message", status.message},
             {"firmware", status.firmware}};
+}
+
+json station_json(const DeviceRecord& device) {
+    return device.station.empty() ? json() : json(device.station);
 }
 
 std::vector<std::string> device_actions(const DeviceRunner& runner) {
@@ -140,6 +159,8 @@ void add_subject(App& app, const EventRecord& event, json& data) {
     } else if (event.type == "queue") {
         data["queue"] = queue_json(app);
         return;
+    } else if (event.type == "node") {
+        return;  // GET /fleet has the nodes.
     } else if (event.type == "stock") {
         if (app.store().stock.find(event.subject)) {
             return;  // The note says what happened; GET /stock/{id} what is there.
@@ -202,6 +223,15 @@ json cut_json(App& app, const CutRecord& cut) {
     if (const auto runner = app.fleet().find(cut.device)) {
         progress = runner->live_progress(cut.id).value_or(progress);
     }
+    const auto elsewhere =
+        app.fleet().find(cut.device) ? std::nullopt : app.remote().find("cut", cut.id);
+    if (elsewhere && !is_final(cut.state)) {
+        const json& said = elsewhere->at("progress");
+        progress = {said.value("lines_total", progress.lines_total),
+                    said.value("lines_sent", progress.lines_sent),
+                    said.value("lines_acknowledged", progress.lines_acknowledged),
+                    said.value("burnt_mm", 0.0), said.value("burn_mm", 0.0)};
+    }
     const double total = static_cast<double>(progress.lines_total);
     const double fraction = cut.state == CutState::Done ? 1.0
                             : total > 0.0 ? static_cast<double>(progress.lines_acknowledged) / total
@@ -243,10 +273,61 @@ json device_json(const DeviceRunner& runner) {
             {"uri", device.uri},
             {"auto_start", device.auto_start},
             {"bed_mm", device.bed_mm},
+            {"station", station_json(device)},
             {"status", status_json(runner.status())},
             {"cut", cut ? json(*cut) : json()},
             {"console", runner.console_lines()},
             {"actions", device_actions(runner)}};
+}
+
+// Of a machine on another node: what that says of it, or that it says nothing.
+json device_json(App& app, const Machine& machine) {
+    if (machine.runner) {
+        return device_json(*machine.runner);
+    }
+    const DeviceRecord& device = machine.record;
+    json view{{"id", device.id},         {"name", device.name},
+              {"uri", device.uri},       {"auto_start", device.auto_start},
+              {"bed_mm", device.bed_mm}, {"station", station_json(device)}};
+    const auto elsewhere = app.remote().find("device", device.id);
+    drivers::DeviceStatus unknown;
+    unknown.message = device.station.empty()
+                          ? "no station has this machine"
+                          : fmt::format("the station {} is silent", device.station);
+    view["status"] = elsewhere ? elsewhere->at("status") : status_json(unknown);
+    view["cut"] = elsewhere ? elsewhere->at("cut") : json();
+    view["console"] = elsewhere ? elsewhere->at("console") : json::array();
+    view["actions"] = elsewhere ? elsewhere->at("actions") : json::array();
+    return view;
+}
+
+std::optional<std::string> passing_view(App& app, const std::string& type, const std::string& id) {
+    if (type == "job") {
+        const auto running = app.compute().progress(id);
+        return running ? std::optional(dump_json(
+                             {{"progress",
+                               {{"stage", running->stage}, {"fraction", running->fraction}}}}))
+                       : std::nullopt;
+    }
+    if (type == "cut") {
+        const auto cut = app.store().cuts.find(id);
+        return cut ? std::optional(dump_json({{"progress", cut_json(app, *cut).at("progress")}}))
+                   : std::nullopt;
+    }
+    const auto runner = app.fleet().find(id);
+    if (!runner) {
+        return std::nullopt;
+    }
+    json view = device_json(*runner);
+    view["ready"] = runner->is_ready();
+    view["connected"] = runner->status().state != drivers::MachineState::Disconnected;
+    json& console = view["console"];
+    constexpr std::size_t kFewLines = 20;
+    if (console.size() > kFewLines) {
+        console.erase(console.begin(),
+                      console.end() - static_cast<json::difference_type>(kFewLines));
+    }
+    return dump_json(view);
 }
 
 std::vector<StoredEvent> stored_events(App& app, std::int64_t after, int limit) {
@@ -283,11 +364,11 @@ std::optional<PassingEvent> passing_event(App& app,
         of_job = cut->job;
         data["cut"] = cut_json(app, *cut);
     } else {
-        const auto runner = app.fleet().find(id);
-        if (!runner) {
+        const auto machine = find_machine(app, id);
+        if (!machine) {
             return std::nullopt;
         }
-        data["device"] = device_json(*runner);
+        data["device"] = device_json(app, *machine);
     }
     return PassingEvent{of_job, dump_json(data)};
 }
@@ -312,8 +393,8 @@ std::string snapshot_event(App& app, std::int64_t seq, const std::optional<std::
             data["cuts"].push_back(cut_json(app, cut));
         }
     }
-    for (const auto& runner : app.fleet().all()) {
-        data["devices"].push_back(device_json(*runner));
+    for (const Machine& machine : all_machines(app)) {
+        data["devices"].push_back(device_json(app, machine));
     }
     return dump_json(data);
 }

@@ -17,6 +17,7 @@
 namespace leafcutter::server {
 
 class App;
+struct Machine;
 
 // As GET /queue.
 nlohmann::json queue_json(App& app);
@@ -27,6 +28,10 @@ bool is_test_card(const JobRecord& job);
 
 nlohmann::json cut_json(App& app, const CutRecord& cut);
 nlohmann::json device_json(const DeviceRunner& runner);
+nlohmann::json device_json(App& app, const Machine& machine);
+
+// What other nodes have to know of something here, as JSON text of less than 8000 bytes.
+std::optional<std::string> passing_view(App& app, const std::string& type, const std::string& id);
 
 // Whether `action` ("start", "confirm-sheet", …) is among the cut's actions now.
 bool cut_allows(App& app, const CutRecord& cut, const std::string& action);

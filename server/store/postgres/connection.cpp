@@ -38,7 +38,7 @@ bool wait_for(int socket, short events, Clock::time_point until) {
 // it is answered, whatever the server's own settings.
 constexpr const char* kSettings =
     "SET client_min_messages = warning;"
-    "SET idle_in_transaction_session_timeout = '5s';"
+    "SET idle_in_transaction_session_timeout = '2s';"
     "SET statement_timeout = '30s';"
     "SET extra_float_digits = 1;"
     "SELECT set_config('synchronous_commit', 'on', false) "

@@ -103,6 +103,14 @@ void PgDatabase::note_lost(const char* why) const {
     }
 }
 
+void PgDatabase::note_back() {
+    const std::scoped_lock lock(mutex_);
+    if (!trouble_.empty()) {
+        spdlog::info("the database {} is back", where_);
+        trouble_.clear();
+    }
+}
+
 void PgDatabase::check_reachable() const {
     const std::scoped_lock lock(mutex_);
     if (!trouble_.empty()) {
@@ -244,21 +252,20 @@ void PgDatabase::watch(const std::stop_token& stop) {
 void PgDatabase::listen(const std::stop_token& stop) {
     PgConnection listener(uri_, kPatience);
     listener.run("LISTEN leafcutter_events; LISTEN leafcutter_passing");
-    {
-        const std::scoped_lock lock(mutex_);
-        if (!trouble_.empty()) {
-            spdlog::info("the database {} is back", where_);
-            trouble_.clear();
-        }
-    }
+    note_back();
     tell({{kEventChannel, ""}});  // What happened meanwhile was announced to nobody.
     auto heard = std::chrono::steady_clock::now();
     while (!stop.stop_requested()) {
         const std::vector<PgNotice> notices = listener.notices(kSlice);
         const auto now = std::chrono::steady_clock::now();
-        if (now - heard >= kSilence) {
+        // Another connection may have been lost alone: an old one, after an outage.
+        const bool doubted = !trouble().empty();
+        if (doubted || now - heard >= kSilence) {
             listener.run("SELECT 1");
             heard = now;
+        }
+        if (doubted) {
+            note_back();
         }
         tell(notices);
     }

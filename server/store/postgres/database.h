@@ -54,6 +54,7 @@ private:
     void listen(const std::stop_token& stop);
     void tell(const std::vector<PgNotice>& notices);
     void note_lost(const char* why) const;
+    void note_back();
     void check_reachable() const;
     std::unique_ptr<PgConnection> take_reader() const;
 

@@ -132,6 +132,7 @@ export type Device = {
   readonly cut: string | null;
   readonly console: readonly (string)[];
   readonly actions: readonly (string)[];
+  readonly station: string | null;
 };
 
 export type Port = {
@@ -334,6 +335,45 @@ export type MachineSetting = {
   readonly name: string;
 };
 
+export type FleetNode = {
+  readonly id: string;
+  readonly role: "all" | "api" | "worker" | "station";
+  readonly url: string;
+  readonly version: string;
+  readonly mode: "active" | "paused" | "draining";
+  readonly state: "active" | "paused" | "draining" | "drained" | "silent";
+  readonly silent_s: number;
+  readonly joined_at: string;
+  readonly seen_at: string;
+  readonly machines: readonly (string)[];
+  readonly workers: number;
+  readonly computing: number;
+  readonly cutting: number;
+  readonly database_ms: number;
+  readonly actions: readonly (string)[];
+};
+
+export type Fleet = {
+  readonly alone: boolean;
+  readonly node: string | null;
+  readonly lease_s: number | null;
+  readonly nodes: readonly (FleetNode)[];
+  readonly machine_leases: readonly ({
+    readonly device: string;
+    readonly station: string;
+    readonly fence: number;
+    readonly held: boolean;
+    readonly left_s: number;
+  })[];
+  readonly claims: readonly ({
+    readonly job: string;
+    readonly worker: string;
+    readonly fence: number;
+    readonly attempt: number;
+    readonly until: string;
+  })[];
+};
+
 export type Call =
   | "GET /jobs"
   | "POST /jobs"
@@ -348,6 +388,7 @@ export type Call =
   | "GET /jobs/{id}/package.zip"
   | "GET /jobs/{id}/events"
   | "POST /jobs/{id}/cuts"
+  | "GET /blobs/{sha256}"
   | "PUT /blobs/{sha256}"
   | "GET /cuts"
   | "GET /cuts/{id}"
@@ -404,4 +445,9 @@ export type Call =
   | "POST /keys"
   | "DELETE /keys/{id}"
   | "GET /audit"
-  | "GET /devices/{id}/settings";
+  | "GET /devices/{id}/settings"
+  | "GET /fleet"
+  | "POST /fleet/{id}/pause"
+  | "POST /fleet/{id}/drain"
+  | "POST /fleet/{id}/resume"
+  | "DELETE /fleet/{id}";

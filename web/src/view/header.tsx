@@ -2,6 +2,7 @@
 
 import { t } from '../messages/messages.ts';
 import { formatRoute, type Section, sectionOf } from '../state/route.ts';
+import { session } from '../state/session.ts';
 import { connection, route } from '../state/store.ts';
 import { Icon, type IconName, Logo } from './icons.tsx';
 import { StopButton } from './stop_button.tsx';
@@ -14,15 +15,12 @@ const kSections: readonly { readonly section: Section; readonly icon: IconName }
   { section: 'settings', icon: 'gear' },
 ];
 
-export function Header() {
+// Where one may go, and whether what is shown there is live.
+function Ways() {
   const here = sectionOf(route.value);
   const state = connection.value;
   return (
-    <header class="top">
-      <a class="brand" href="#/" aria-label={t.title}>
-        <Logo />
-        <span>{t.title}</span>
-      </a>
+    <>
       <nav class="main-nav" aria-label={t.nav.label}>
         {kSections.map(({ section, icon }) => (
           <a key={section} href={formatRoute({ page: section })} aria-current={section === here ? 'page' : undefined}>
@@ -35,6 +33,19 @@ export function Header() {
         <span class="dot" aria-hidden="true" />
         <span class="connection-word">{t.connection[state]}</span>
       </p>
+    </>
+  );
+}
+
+// Before the login there is nowhere to go, but machines can be stopped.
+export function Header() {
+  return (
+    <header class="top">
+      <a class="brand" href="#/" aria-label={t.title}>
+        <Logo />
+        <span>{t.title}</span>
+      </a>
+      {session.value.state !== 'asked' && <Ways />}
       <StopButton />
     </header>
   );

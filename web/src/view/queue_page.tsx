@@ -172,7 +172,7 @@ function HistoryTable() {
         <p class="quiet">{t.queue.statistics(count(sum.jobs), count(sum.strips), duration(sum.laserS))}</p>
       </div>
       {jobs.length === 0 ? (
-        <p class="quiet">{feed.value.jobs.size === 0 ? t.queue.noHistory : t.queue.notFound}</p>
+        <p class="quiet">{history(feed.value.jobs, { words: '', state: 'all' }).length === 0 ? t.queue.noHistory : t.queue.notFound}</p>
       ) : (
         <div class="table-box" tabIndex={0} role="group" aria-label={t.queue.history}>
           <table class="history">

@@ -180,7 +180,7 @@ export function SheetCanvas(props: {
         class={whole ? 'sheet whole' : 'sheet'}
         viewBox={`${view.x} ${view.y} ${view.width} ${view.height}`}
         role="img"
-        tabIndex={0}
+        tabindex={0}
         aria-label={t.sheets.label(sheet.id, sheet.pieces.length)}
         onKeyDown={(event) => {
           const edit = editByKey(event, box);

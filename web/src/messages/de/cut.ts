@@ -106,5 +106,17 @@ export const cut = {
       sleep: 'Ruht',
       unknown: 'Unbekannt',
     } as Readonly<Record<string, string>>,
+    fleet: {
+      title: 'Verbund',
+      here: 'antwortet hier',
+      computing: (c: string, w: string) => `${c} von ${w} Rechnern rechnen`,
+      cutting: (c: string) => `schneidet ${c}`,
+      silent: (s: string) => `still seit ${s}`,
+      forget: 'Vergessen',
+      roles: { all: 'macht alles', api: 'antwortet', worker: 'rechnet', station: 'führt Maschinen' },
+      states: { active: 'bei der Arbeit', paused: 'angehalten', draining: 'wird fertig', drained: 'fertig', silent: 'still' },
+      commands: { pause: 'Anhalten', drain: 'Auslaufen lassen', resume: 'Weiter' },
+      hints: { pause: 'Beginnt nichts Neues; Begonnenes läuft weiter.', drain: 'Beendet, was es hat, um dann abgeschaltet zu werden.', resume: 'Nimmt wieder Arbeit an.' },
+    },
   },
 };

@@ -106,5 +106,17 @@ export const cut = {
       sleep: 'Asleep',
       unknown: 'Unknown',
     } as Readonly<Record<string, string>>,
+    fleet: {
+      title: 'Fleet',
+      here: 'answers here',
+      computing: (c: string, w: string) => `${c} of ${w} workers compute`,
+      cutting: (c: string) => `cuts ${c}`,
+      silent: (s: string) => `silent for ${s}`,
+      forget: 'Forget',
+      roles: { all: 'does all', api: 'answers', worker: 'computes', station: 'runs machines' },
+      states: { active: 'at work', paused: 'paused', draining: 'finishing', drained: 'finished', silent: 'silent' },
+      commands: { pause: 'Pause', drain: 'Drain', resume: 'Go on' },
+      hints: { pause: 'Begins nothing; what is in work goes on.', drain: 'Finishes what it has, to be shut down then.', resume: 'Takes up work again.' },
+    },
   },
 };

@@ -106,5 +106,17 @@ export const cut = {
       sleep: 'En reposo',
       unknown: 'Desconocido',
     } as Readonly<Record<string, string>>,
+    fleet: {
+      title: 'Flota',
+      here: 'responde aquí',
+      computing: (c: string, w: string) => `${c} de ${w} procesos calculan`,
+      cutting: (c: string) => `corta ${c}`,
+      silent: (s: string) => `en silencio desde hace ${s}`,
+      forget: 'Olvidar',
+      roles: { all: 'hace todo', api: 'responde', worker: 'calcula', station: 'maneja máquinas' },
+      states: { active: 'trabajando', paused: 'en pausa', draining: 'terminando', drained: 'terminado', silent: 'en silencio' },
+      commands: { pause: 'Pausar', drain: 'Vaciar', resume: 'Seguir' },
+      hints: { pause: 'No empieza nada; lo que está en curso sigue.', drain: 'Termina lo que tiene para poder apagarse.', resume: 'Vuelve a aceptar trabajo.' },
+    },
   },
 };

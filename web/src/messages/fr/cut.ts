@@ -106,5 +106,17 @@ export const cut = {
       sleep: 'En veille',
       unknown: 'Inconnu',
     } as Readonly<Record<string, string>>,
+    fleet: {
+      title: 'Flotte',
+      here: 'répond ici',
+      computing: (c: string, w: string) => `${c} processus sur ${w} calculent`,
+      cutting: (c: string) => `découpe ${c}`,
+      silent: (s: string) => `muet depuis ${s}`,
+      forget: 'Oublier',
+      roles: { all: 'fait tout', api: 'répond', worker: 'calcule', station: 'conduit les machines' },
+      states: { active: 'au travail', paused: 'en pause', draining: 'termine', drained: 'terminé', silent: 'muet' },
+      commands: { pause: 'Suspendre', drain: 'Vider', resume: 'Continuer' },
+      hints: { pause: 'Ne commence rien ; le travail en cours continue.', drain: 'Termine ce qui est en cours, pour être arrêté ensuite.', resume: 'Reprend du travail.' },
+    },
   },
 };

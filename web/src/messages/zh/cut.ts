@@ -106,5 +106,17 @@ export const cut = {
       sleep: '休眠中',
       unknown: '未知',
     } as Readonly<Record<string, string>>,
+    fleet: {
+      title: '机群',
+      here: '由此节点应答',
+      computing: (c: string, w: string) => `${w} 个计算进程中有 ${c} 个在计算`,
+      cutting: (c: string) => `正在切割 ${c} 项`,
+      silent: (s: string) => `已静默 ${s}`,
+      forget: '移除节点',
+      roles: { all: '全部职能', api: '应答请求', worker: '计算', station: '管理机器' },
+      states: { active: '工作中', paused: '已暂停', draining: '收尾中', drained: '已收尾', silent: '静默' },
+      commands: { pause: '暂停', drain: '排空', resume: '继续' },
+      hints: { pause: '不再开始新任务，进行中的任务继续。', drain: '完成手头任务后即可关机。', resume: '重新接受任务。' },
+    },
   },
 };

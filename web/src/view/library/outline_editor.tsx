@@ -40,7 +40,7 @@ function Corner(props: { readonly at: Point; readonly size: number; readonly lab
     <g
       class={`outline-${kind}`}
       role="button"
-      tabIndex={0}
+      tabindex={0}
       aria-label={label}
       transform={`translate(${at[0]} ${-at[1]})`}
       onPointerDown={onPress}

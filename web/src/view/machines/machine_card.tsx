@@ -101,15 +101,15 @@ function Body(props: { readonly device: Device }) {
 
 function Commands(props: { readonly device: Device }) {
   const { device } = props;
+  const can = kCommands.filter((command) => device.actions.includes(command));
+  if (can.length === 0) return null;
   return (
     <div class="buttons">
-      {kCommands
-        .filter((command) => device.actions.includes(command))
-        .map((command) => (
-          <button key={command} type="button" class="button" onClick={() => void attempt(() => commandDevice(device.id, command))}>
-            {t.machines.commands[command]}
-          </button>
-        ))}
+      {can.map((command) => (
+        <button key={command} type="button" class="button" onClick={() => void attempt(() => commandDevice(device.id, command))}>
+          {t.machines.commands[command]}
+        </button>
+      ))}
     </div>
   );
 }

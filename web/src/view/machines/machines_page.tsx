@@ -6,6 +6,7 @@ import { t } from '../../messages/messages.ts';
 import { isAdmin } from '../../state/session.ts';
 import { feed } from '../../state/store.ts';
 import { Icon } from '../icons.tsx';
+import { FleetPanel } from './fleet_panel.tsx';
 import { MachineCard } from './machine_card.tsx';
 import { MachineForm } from './machine_form.tsx';
 
@@ -32,6 +33,7 @@ export function MachinesPage() {
           ))}
         </ul>
       )}
+      <FleetPanel />
       {adding && <MachineForm device={null} onClose={() => setAdding(false)} />}
     </div>
   );

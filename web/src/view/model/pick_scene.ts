@@ -24,7 +24,7 @@ import { Stage } from './stage.ts';
 
 export interface Marks {
   readonly vertices: readonly number[]; // By their numbers in the file.
-  readonly paths: readonly (readonly number[])[]; // Likewise, closed where they end as they begin.
+  readonly paths: readonly (readonly number[])[]; // Likewise, of loops: three or more are drawn closed.
   readonly loops: readonly number[]; // Boundary loops that are marked.
 }
 
@@ -81,6 +81,13 @@ class PickModel {
       }
     });
     return best;
+  }
+
+  // Straight from point to point: the daemon finds the way over the surface.
+  way(fileVertices: readonly number[]): number[] {
+    const points = fileVertices.map((vertex) => this.pointOf(vertex)).filter((point) => point !== null);
+    const last = points.length < 3 ? points.length - 1 : points.length;
+    return points.slice(0, last).flatMap((point, k) => [...point.toArray(), ...(points[(k + 1) % points.length] ?? point).toArray()]);
   }
 
   segments(rings: readonly ArrayLike<number>[]): Float32Array {
@@ -144,7 +151,8 @@ export function createPickScene(canvas: HTMLCanvasElement, mesh: Welded): PickSc
         one.renderOrder = 2;
         marked.push(one);
       }
-      const chosen = lines(path, model.segments(loops.flatMap((number) => mesh.loops[number] ?? [])));
+      const rings = model.segments(loops.map((number) => mesh.loops[number] ?? []));
+      const chosen = lines(path, Float32Array.from([...rings, ...paths.flatMap((vertices) => model.way(vertices))]));
       if (chosen !== null) marked.push(chosen);
       if (marked.length > 0) stage.scene.add(...marked);
       stage.draw();

@@ -4,9 +4,12 @@
 import { AmbientLight, DirectionalLight, PerspectiveCamera, Scene, Sphere, Spherical, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
+import { nextRatio } from '../../state/sharpness.ts';
+
 const kFieldDeg = 32;
 const kMostSamples = 4000;
 const kAir = 1.06;
+const kRestMs = 220; // Without a turn for so long, the view is at rest.
 const kFromDirection = new Vector3(0.55, -0.95, 0.75).normalize();
 
 // Throws if the browser has no WebGL.
@@ -17,6 +20,9 @@ export class Stage {
   readonly controls: OrbitControls;
   private readonly resizing: ResizeObserver;
   private frame = 0;
+  private readonly sharp = Math.min(devicePixelRatio, 2); // Pixels to one of CSS, at rest.
+  private moving = this.sharp; // Likewise, while the view is turned.
+  private rest: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -24,7 +30,7 @@ export class Stage {
     private readonly points: ArrayLike<number>, // x y z of what has to be seen whole.
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(this.sharp);
     this.camera.up.set(0, 0, 1);
     const sun = new DirectionalLight('#ffffff', 2.2);
     sun.position.set(-0.5, 0.8, 0.9);
@@ -35,7 +41,7 @@ export class Stage {
     this.controls.enableZoom = false;
     canvas.addEventListener('focus', () => (this.controls.enableZoom = true));
     canvas.addEventListener('blur', () => (this.controls.enableZoom = false));
-    this.controls.addEventListener('change', () => this.draw());
+    this.controls.addEventListener('change', () => this.drawTurned());
     this.resizing = new ResizeObserver(() => this.resize());
     this.resizing.observe(canvas);
     this.resize();
@@ -47,6 +53,30 @@ export class Stage {
       this.frame = 0;
       this.renderer.render(this.scene, this.camera);
     });
+  }
+
+  // Turning goes on at once, if need be with fewer pixels; it is drawn sharp when it ends.
+  private drawTurned(): void {
+    clearTimeout(this.rest);
+    this.rest = setTimeout(() => this.drawSharp(), kRestMs);
+    if (this.frame !== 0) return;
+    this.frame = requestAnimationFrame((begun) => {
+      this.frame = 0;
+      this.sample(this.moving);
+      this.renderer.render(this.scene, this.camera);
+      // The next frame begins when this one is on the screen.
+      requestAnimationFrame((shown) => (this.moving = nextRatio(this.moving, this.sharp, shown - begun)));
+    });
+  }
+
+  private drawSharp(): void {
+    if (this.renderer.getPixelRatio() === this.sharp) return;
+    this.sample(this.sharp);
+    this.draw();
+  }
+
+  private sample(ratio: number): void {
+    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
   }
 
   private resize(): void {
@@ -111,6 +141,7 @@ export class Stage {
 
   dispose(): void {
     cancelAnimationFrame(this.frame);
+    clearTimeout(this.rest);
     this.resizing.disconnect();
     this.controls.dispose();
     this.renderer.dispose();
