@@ -3,11 +3,12 @@
 //   LEAFCUTTER_BIN=… node accounts.mjs
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { after, before } from 'node:test';
 
 import { axeFaults, drop, launch, openPage, picture, until } from './browser.mjs';
 import { startTarget } from './daemon.mjs';
 import { torusOff } from './mesh.mjs';
+import { step } from './story.mjs';
 import { layWire } from './wire.mjs';
 
 const kAdmin = { name: 'ada', password: 'a horse that weaves' };
@@ -32,17 +33,6 @@ after(async () => {
   wire?.close();
   await target?.close();
 });
-
-// The parts of one story: where one fails, those after it would only wait in vain.
-let broken = '';
-function step(name, act) {
-  test(name, async () => {
-    assert.equal(broken, '', 'an earlier step failed');
-    broken = name;
-    await act();
-    broken = '';
-  });
-}
 
 async function logIn(page, { name, password }) {
   await page.getByLabel('User name').fill(name);

@@ -10,6 +10,7 @@ import { after, before, test } from 'node:test';
 import { axeFaults, canvasColours, drop, kPhone, launch, openPage, picture, steady, until } from './browser.mjs';
 import { startTarget } from './daemon.mjs';
 import { torusOff } from './mesh.mjs';
+import { step } from './story.mjs';
 
 let target;
 let browser;
@@ -38,17 +39,6 @@ async function assertAccessible(page, where) {
 // In the page: length of everything drawn as burnt, in mm.
 const burntLength = () =>
   [...document.querySelectorAll('.burn path')].reduce((sum, path) => sum + path.getTotalLength(), 0);
-
-// The steps of one story: where one fails, those after it would only wait in vain.
-let broken = '';
-function step(name, act) {
-  test(name, async () => {
-    assert.equal(broken, '', 'an earlier step failed');
-    broken = name;
-    await act();
-    broken = '';
-  });
-}
 
 step('the first page is live and accessible', async () => {
   await picture(desk.page, 'start-light');

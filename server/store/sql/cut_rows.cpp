@@ -107,22 +107,29 @@ std::vector<CutRecord> open_cuts(SqlSession& session, const std::string& device)
     return cuts;
 }
 
-void tell(SqlSession& session, const CutRecord& cut, std::string note) {
+namespace {
+
+void tell_of(SqlSession& session,
+             const char* type,
+             const std::string& subject,
+             const std::string& job,
+             std::string note) {
     EventRecord event;
-    event.type = "cut";
-    event.subject = cut.id;
-    event.job = cut.job;
+    event.type = type;
+    event.subject = subject;
+    event.job = job;
     event.note = std::move(note);
     append_event(session, event);
 }
 
+}  // namespace
+
+void tell(SqlSession& session, const CutRecord& cut, std::string note) {
+    tell_of(session, "cut", cut.id, cut.job, std::move(note));
+}
+
 void tell_job_of(SqlSession& session, const CutRecord& cut, std::string note) {
-    EventRecord event;
-    event.type = "job";
-    event.subject = cut.job;
-    event.job = cut.job;
-    event.note = std::move(note);
-    append_event(session, event);
+    tell_of(session, "job", cut.job, cut.job, std::move(note));
 }
 
 bool move_cut(SqlSession& session, const CutRecord& cut, CutState to, const std::string& reason) {
