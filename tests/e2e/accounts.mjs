@@ -133,7 +133,7 @@ step('sheets come into stock, are drawn, and go', async () => {
   await page.getByRole('button', { name: 'Save' }).click();
   const card = page.locator('.stock-card', { hasText: '7 sheets' });
   await card.locator('.stock-picture path').first().waitFor();
-  assert.match(await card.innerText(), /480 × 320 mm/);
+  assert.match(await card.innerText(), /480\s×\s320\smm/);
   await confirmRemoval(card.getByRole('button', { name: /remove/i }), card);
 });
 

@@ -53,7 +53,7 @@ export const result = {
     speed: 'Tempo',
     playAbout: (line: string, of: string, burn: string, travel: string) =>
       `Zeile ${line} von ${of} · ${burn} m gebrannt, ${travel} m Weg insgesamt`,
-    size: (width: string, height: string) => `${width} × ${height} mm`,
+    size: (width: string, height: string) => `${width}\u00a0×\u00a0${height}\u00a0mm`,
   },
   report: {
     title: 'Güte',

@@ -53,7 +53,7 @@ export const result = {
     speed: 'Speed',
     playAbout: (line: string, of: string, burn: string, travel: string) =>
       `Line ${line} of ${of} · ${burn} m burnt, ${travel} m of way in all`,
-    size: (width: string, height: string) => `${width} × ${height} mm`,
+    size: (width: string, height: string) => `${width}\u00a0×\u00a0${height}\u00a0mm`,
   },
   report: {
     title: 'Quality',

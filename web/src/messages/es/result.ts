@@ -53,7 +53,7 @@ export const result = {
     speed: 'Velocidad',
     playAbout: (line: string, of: string, burn: string, travel: string) =>
       `Línea ${line} de ${of} · ${burn} m quemados, ${travel} m de recorrido en total`,
-    size: (width: string, height: string) => `${width} × ${height} mm`,
+    size: (width: string, height: string) => `${width}\u00a0×\u00a0${height}\u00a0mm`,
   },
   report: {
     title: 'Calidad',

@@ -53,7 +53,7 @@ export const result = {
     speed: 'Vitesse',
     playAbout: (line: string, of: string, burn: string, travel: string) =>
       `Ligne ${line} sur ${of} · ${burn} m brûlés, ${travel} m de trajet en tout`,
-    size: (width: string, height: string) => `${width} × ${height} mm`,
+    size: (width: string, height: string) => `${width}\u00a0×\u00a0${height}\u00a0mm`,
   },
   report: {
     title: 'Qualité',

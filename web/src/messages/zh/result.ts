@@ -53,7 +53,7 @@ export const result = {
     speed: '速度',
     playAbout: (line: string, of: string, burn: string, travel: string) =>
       `第 ${line} 行，共 ${of} 行 · 共切割 ${burn} m，空走 ${travel} m`,
-    size: (width: string, height: string) => `${width} × ${height} mm`,
+    size: (width: string, height: string) => `${width}\u00a0×\u00a0${height}\u00a0mm`,
   },
   report: {
     title: '质量',
