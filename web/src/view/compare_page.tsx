@@ -73,7 +73,7 @@ function Parameters(props: { readonly a: Job; readonly b: Job }) {
   const rows = differingParams(props.a.params, props.b.params);
   if (rows.length === 0) return null;
   return (
-    <Panel title={t.compare.parameters} class="compare-figures">
+    <Panel title={t.compare.parameters} class="compare-figures compare-parameters">
       <table>
         <thead>
           <tr>
