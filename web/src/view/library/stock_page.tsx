@@ -23,7 +23,7 @@ export function StockPicture(props: { readonly item: StockItem; readonly scaleMm
   const colour = materials.value.find((one) => one.id === item.material)?.colour ?? '#bbbbbb';
   return (
     <svg class="stock-picture" viewBox={`0 0 ${scaleMm} ${item.heightMm + 4}`} aria-hidden="true">
-      <g transform={`translate(${2 - low(0)} ${item.heightMm + 2 + low(1)}) scale(1 -1)`}>
+      <g transform={`translate(${(scaleMm - item.widthMm) / 2 - low(0)} ${item.heightMm + 2 + low(1)}) scale(1 -1)`}>
         <path d={rings} fill={colour} fill-rule="evenodd" />
       </g>
     </svg>
