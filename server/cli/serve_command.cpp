@@ -102,7 +102,7 @@ void serve(const ServeOptions& options) {
     parts.compute = compute_in_child(budget_of(config));
     parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
     parts.check_params = check_job_params;
-    parts.recut = recut_job_pieces;
+    parts.check_recut = check_job_recut;
     parts.test_card = make_test_card;
     const std::unique_ptr<App> app = started(config, std::move(parts));
     const bool v6 = config.listen.address.find(':') != std::string::npos;
