@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <sys/resource.h>
 #include <unistd.h>
 #include <utility>
 
@@ -93,8 +94,18 @@ ComputeBudget budget_of(const Config& config) {
     return budget;
 }
 
+// As many files as the host allows: live events alone may be a thousand.
+void open_all_files() {
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) == 0) {
+        files.rlim_cur = files.rlim_max;
+        ::setrlimit(RLIMIT_NOFILE, &files);
+    }
+}
+
 void serve(const ServeOptions& options) {
     std::signal(SIGPIPE, SIG_IGN);
+    open_all_files();
     const InterruptWatch interrupt;
     const Config config = wanted_config(options);
     begin_log(config.log_format);
