@@ -10,7 +10,6 @@ import io
 import json
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -20,6 +19,9 @@ import urllib.request
 import uuid
 import zipfile
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).parent / "support"))
+from loopback import free_port  # noqa: E402
 
 LARGEST_DEVIATION_MM = 0.05
 
@@ -66,12 +68,6 @@ def show(text, last=False):
 
 
 show.before = ""
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def start_daemon(binary, state, port, log):

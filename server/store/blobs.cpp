@@ -263,7 +263,7 @@ std::size_t Blobs::sweep(const std::function<bool(const std::string&)>& is_refer
     for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
         const std::string name = entry.path().filename().string();
         if (entry.is_regular_file() && is_sha256(name) && entry.last_write_time() < yesterday &&
-            !is_referenced(name)) {
+            (entry.path().parent_path().filename() == kPartial || !is_referenced(name))) {
             stale.push_back(entry.path());
         }
     }

@@ -103,6 +103,11 @@ public:
     // Creates the folder and sweeps temporary files that a dead process left behind.
     explicit Blobs(std::filesystem::path folder, Others others = {});
 
+    // Below folder(): those of which only a part has come, under the name of the whole.
+    static constexpr const char* kPartial = "partial";
+
+    const std::filesystem::path& folder() const { return folder_; }
+
     std::unique_ptr<BlobWriter> begin() const;
     BlobId put(std::string_view bytes) const;
 

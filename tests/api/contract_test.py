@@ -9,7 +9,8 @@ import re
 import unittest
 import zipfile
 
-from cuts_test import PARAMS, PLATE, CutsOf, Machine, plate
+from cuts_test import PARAMS, PLATE, CutsOf, Machine
+from flat_mesh import plate
 
 RFC3339 = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z")
 JOB_STATES = {"queued", "computing", "ready", "done", "failed", "cancelled"}

@@ -3,7 +3,6 @@ import http.client
 import json
 import re
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -11,14 +10,11 @@ from pathlib import Path
 
 from api_schema import problem_of
 
+sys.path.append(str(Path(__file__).parents[1] / "support"))
+from loopback import free_port  # noqa: E402, F401
+
 BINARY = sys.argv.pop(1) if len(sys.argv) > 1 else "build/release/leafcutter"
 SQUARE = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 class Daemon:

@@ -8,6 +8,7 @@ import json
 import os
 import tempfile
 import threading
+import time
 import unittest
 import zipfile
 
@@ -201,6 +202,55 @@ class Large(Http):
             sent_mb += count
         print(f"{sent_mb} MB taken; {before:.1f} MB of memory before, {most:.1f} MB at most")
         self.assertLess(most - before, 16)
+
+    def send_piece(self, mesh, first, last, sent=None):
+        """A piece, or with `sent` only so much of it before the connection breaks."""
+        path = "/api/v1/blobs/" + hashlib.sha256(mesh).hexdigest()
+        head = {"Content-Range": f"bytes {first}-{last}/{len(mesh)}"}
+        if sent is None:
+            return self.daemon.exchange("PUT", path, mesh[first:last + 1], head)
+        connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=20)
+        connection.request("PUT", path, headers={**head, "Content-Length": str(last + 1 - first)})
+        connection.send(mesh[first:first + sent])
+        connection.close()
+        return None
+
+    def here(self, mesh):
+        path = "/api/v1/blobs/" + hashlib.sha256(mesh).hexdigest()
+        status, headers, _ = self.daemon.exchange("PUT", path, b"", {"Content-Range": f"bytes */{len(mesh)}"})
+        return int(headers["Upload-Offset"]) if status == 202 else status
+
+    def test_an_upload_goes_on_where_it_broke_off(self):
+        mesh = os.urandom(3 << 20)
+        size = len(mesh)
+        self.assertEqual(self.here(mesh), 0)
+        self.send_piece(mesh, 0, size - 1, sent=1 << 20)
+        deadline = time.monotonic() + 20
+        while (offset := self.here(mesh)) in (0, 409):  # Until the daemon has noticed.
+            self.assertLess(time.monotonic(), deadline)
+        self.assertLessEqual(offset, 1 << 20)
+        status, headers, _ = self.send_piece(mesh, offset + 1, size - 1)
+        self.assertEqual((status, headers["Upload-Offset"]), (409, str(offset)))
+        self.assertEqual(self.send_piece(mesh, offset, (2 << 20) - 1)[0], 202)
+        self.assertEqual(self.here(mesh), 2 << 20)
+        self.assertEqual(self.send_piece(mesh, 1000, 1999)[0], 202)  # Again from there.
+        self.assertEqual(self.here(mesh), 2000)
+        self.assertEqual(self.send_piece(mesh, 2000, size - 1)[0], 201)
+        self.assertEqual((self.here(mesh), self.send_piece(mesh, 0, 9)[0]), (204, 204))
+        path = "/api/v1/blobs/" + hashlib.sha256(mesh).hexdigest()
+        self.assertEqual(self.daemon.call("GET", path), (200, mesh))
+
+    def test_pieces_that_are_none_are_refused(self):
+        mesh = os.urandom(1000)
+        path = "/api/v1/blobs/" + hashlib.sha256(mesh).hexdigest()
+        for spec in ("bytes 0-9/5", "bytes 9-0/1000", "bytes 0-998/1000", "0-999/1000", "bytes 0-999/*", "bytes -1-998/1000",
+                     "bytes 0-999/1000x", "bytes 0-999", "bytes 0-99999999999999999999/1000"):
+            self.assertEqual(self.daemon.call("PUT", path, mesh, {"Content-Range": spec})[0], 400, spec)
+        self.assertEqual(self.daemon.call("PUT", path, mesh, {"Content-Range": f"bytes 0-999/{1 << 40}"})[0], 413)
+        wrong = path[:-64] + "0" * 64
+        self.assertEqual(self.daemon.call("PUT", wrong, mesh, {"Content-Range": "bytes 0-999/1000"})[0], 422)
+        _, headers, _ = self.daemon.exchange("PUT", wrong, b"", {"Content-Range": "bytes */1000"})
+        self.assertEqual(headers["Upload-Offset"], "0")  # Nothing of it is left.
 
     def test_a_body_beyond_the_limit_is_refused_before_it_is_sent(self):
         connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=20)

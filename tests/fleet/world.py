@@ -6,12 +6,14 @@ import json
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).parents[1] / "support"))
+from loopback import free_port  # noqa: E402
 
 BINARIES = Path("/usr/lib/postgresql/15/bin")
 KEY = "a key that all nodes of the test know"
@@ -30,12 +32,6 @@ def namespaced():
     os.environ["LEAFCUTTER_FLEET_NET"] = "own" if permitted else "shared"
     enter = ["unshare", "-n"] if permitted else []
     os.execvp((enter + [sys.executable])[0], enter + [sys.executable] + sys.argv)
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def run(*command):

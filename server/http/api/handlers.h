@@ -15,6 +15,8 @@ Response list_jobs(App& app, Request& request);
 Response show_job(App& app, Request& request);
 Response delete_job(App& app, Request& request);
 Response recompute_job(App& app, Request& request);
+
+// blobs.cpp
 Response put_blob(App& app, Request& request);
 Response show_blob(App& app, Request& request);
 

@@ -1,4 +1,4 @@
-// Jobs and the meshes they are made of.
+// Jobs.
 
 #include <algorithm>
 #include <array>
@@ -213,45 +213,6 @@ Response recompute_job(App& app, Request& request) {
     job.name = text_field_or(body, "name", old.name);
     job.params_json = params == body.end() ? old.params_json : dump_json(*params);
     return accept(app, request, std::move(job));
-}
-
-Response show_blob(App& app, Request& request) {
-    const std::string& wanted = request.capture("sha256");
-    const Blobs& blobs = app.store().blobs;
-    if (!is_sha256(wanted) || !blobs.is_here(wanted)) {  // Asking others is the asker's business.
-        throw HttpProblem(404, "no-blob", "there is no blob of that name here");
-    }
-    Response response;
-    response.content_type = "application/octet-stream";
-    auto file = std::make_shared<FileHandle>(blobs.open(wanted));
-    response.file = FilePart{std::move(file), 0, blobs.size(wanted).value_or(0)};
-    return response;
-}
-
-Response put_blob(App& app, Request& request) {
-    const std::string& wanted = request.capture("sha256");
-    if (!is_sha256(wanted)) {
-        throw HttpProblem(422, "bad-digest", "the name must be a SHA-256 in lower-case hex");
-    }
-    Response response;
-    std::array<char, 65536> piece;
-    if (app.store().blobs.is_here(wanted)) {
-        while (request.body.read(piece) > 0) {  // Known already; the bytes have to go somewhere.
-        }
-        response.status = 204;
-        return response;
-    }
-    check_room(app, request.body.bytes);
-    const std::unique_ptr<BlobWriter> writer = app.store().blobs.begin();
-    while (const std::size_t size = request.body.read(piece)) {
-        writer->write({piece.data(), size});
-    }
-    if (writer->digest().sha256 != wanted) {
-        throw HttpProblem(422, "bad-digest", "the bytes have another SHA-256 than the name says");
-    }
-    writer->finish();
-    response.status = 201;
-    return response;
 }
 
 }  // namespace leafcutter::server
