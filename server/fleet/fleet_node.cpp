@@ -97,9 +97,11 @@ void FleetNode::beat() {
     const NodeMode mode = store_.fleet.beat(record());
     database_ms_ =
         std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - asked).count();
-    if (!reachable_since_) {
+    // A database, or a process, that stood still for a while is no contact either.
+    if (!reachable_since_ || Clock::now() - last_contact_ > self_.lease / 2) {
         reachable_since_ = Clock::now();
     }
+    last_contact_ = Clock::now();
     keep_jobs();
     mode_ = mode;
     if (cuts(self_.role)) {
