@@ -43,6 +43,35 @@ def run(*command):
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 
 
+def call(at, method, path, body=None, headers=None, timeout=20):
+    """`at`: address and port. The status, and the answer's JSON or bytes."""
+    connection = http.client.HTTPConnection(*at, timeout=timeout)
+    text = body if isinstance(body, (bytes, type(None))) else json.dumps(body)
+    kind = {} if isinstance(body, (bytes, type(None))) else {"Content-Type": "application/json"}
+    try:
+        connection.request(method, "/api/v1" + path, text, {**kind, **(headers or {})})
+        answer = connection.getresponse()
+        content = answer.read()
+        return answer.status, json.loads(content) if content[:1] in (b"{", b"[") else content
+    finally:
+        connection.close()
+
+
+def log_in(at):
+    """Headers with a key that may do everything."""
+    connection = http.client.HTTPConnection(*at, timeout=20)
+    connection.request("POST", "/api/v1/session", json.dumps({"user": "anna", "password": PASSWORD}),
+                       {"Content-Type": "application/json"})
+    answer = connection.getresponse()
+    session = json.loads(answer.read())
+    cookie = answer.headers["Set-Cookie"].split(";")[0]
+    connection.close()
+    headers = {"Cookie": cookie, "X-CSRF-Token": session["csrf_token"]}
+    status, key = call(at, "POST", "/keys", {"label": "test", "role": "admin", "may_fire": True}, headers)
+    assert status == 201, key
+    return {"Authorization": "Bearer " + key["key"]}
+
+
 class Postgres:
     def __init__(self, folder, address, port):
         self.data, self.address, self.port = folder / "pg", address, port
@@ -156,7 +185,7 @@ uri = "{self.machine.uri}"
 auto_start = {str(self.options.get('auto_start', True)).lower()}
 bed_mm = [600, 400]
 """
-        (self.state / "config.toml").write_text(text)
+        (self.state / "config.toml").write_text(text + self.options.get("config", ""))
 
     def start(self):
         # Without the wrapper of that name: a signal is for the node itself.
@@ -191,21 +220,12 @@ bed_mm = [600, 400]
         """Of those that come in."""
         rules = "flush ruleset"
         if percent > 0:
-            rules += (f"\ntable inet loss {{ chain in {{ type filter hook input priority 0; "
-                      f'iifname "eth0" numgen random mod 100 < {percent} drop; }} }}')
-        subprocess.run([*self.enter, "nft", "-f", "-"], input=rules, text=True, check=True)
+            rules += (f"\nadd table inet loss\nadd chain inet loss in {{ type filter hook input priority 0; }}\n"
+                      f'add rule inet loss in iifname "eth0" numgen random mod 100 < {percent} drop')
+        subprocess.run([*self.enter, "nft", "-f", "-"], input=rules + "\n", text=True, check=True)
 
     def call(self, method, path, body=None, headers=None, timeout=20):
-        connection = http.client.HTTPConnection(self.address, self.port, timeout=timeout)
-        text = body if isinstance(body, (bytes, type(None))) else json.dumps(body)
-        kind = {} if isinstance(body, (bytes, type(None))) else {"Content-Type": "application/json"}
-        try:
-            connection.request(method, "/api/v1" + path, text, {**kind, **self.fleet.auth, **(headers or {})})
-            answer = connection.getresponse()
-            content = answer.read()
-            return answer.status, json.loads(content) if content[:1] in (b"{", b"[") else content
-        finally:
-            connection.close()
+        return call((self.address, self.port), method, path, body, {**self.fleet.auth, **(headers or {})}, timeout)
 
 
 class Fleet:
@@ -231,17 +251,7 @@ class Fleet:
         return self.nodes[name]
 
     def log_in(self, node):
-        connection = http.client.HTTPConnection(node.address, node.port, timeout=20)
-        connection.request("POST", "/api/v1/session", json.dumps({"user": "anna", "password": PASSWORD}),
-                           {"Content-Type": "application/json"})
-        answer = connection.getresponse()
-        session = json.loads(answer.read())
-        cookie = answer.headers["Set-Cookie"].split(";")[0]
-        connection.close()
-        self.auth = {"Cookie": cookie, "X-CSRF-Token": session["csrf_token"]}
-        status, key = node.call("POST", "/keys", {"label": "test", "role": "admin", "may_fire": True})
-        assert status == 201, key
-        self.auth = {"Authorization": "Bearer " + key["key"]}
+        self.auth = log_in((node.address, node.port))
 
     def end(self):
         for node in self.nodes.values():
