@@ -196,6 +196,7 @@ void FleetNode::reap_if_sure() {
     }
 }
 
+// Machines before their cuts: what may be done with these depends on those.
 void FleetNode::tell_others() {
     std::set<std::pair<std::string, std::string>> passing;
     {
@@ -204,8 +205,9 @@ void FleetNode::tell_others() {
     }
     for (const auto& [type, id] : passing) {
         if (const auto view = hooks_.view(type, id)) {
-            store_.pass_on(fmt::format(R"({{"from":"{}","type":"{}","id":"{}","view":{}}})",
-                                       self_.id, type, id, *view));
+            const std::string key = fmt::format("{} {}", type == "device" ? 0 : 1, id);
+            store_.pass_on(key, fmt::format(R"({{"from":"{}","type":"{}","id":"{}","view":{}}})",
+                                            self_.id, type, id, *view));
         }
     }
 }

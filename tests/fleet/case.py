@@ -53,10 +53,11 @@ class FleetCase(unittest.TestCase):
         self.fleet = Fleet(sys.argv_binary)
         self.addCleanup(self.fleet.end)
 
-    def populate(self, apis=1, workers=1, stations=1, **station):
+    def populate(self, apis=1, workers=1, stations=1, api=None, **station):
+        options = {"api": api or {}, "worker": {}, "station": station}
         for kind, count in (("api", apis), ("worker", workers), ("station", stations)):
             for number in range(count):
-                self.fleet.add(f"{kind}{number}", kind, **(station if kind == "station" else {}))
+                self.fleet.add(f"{kind}{number}", kind, **options[kind])
         self.api = self.fleet.nodes["api0"]
         self.fleet.log_in(self.api)
         status, _ = self.api.call("PUT", f"/blobs/{SHA}", PLATE)

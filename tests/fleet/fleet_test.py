@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """Several nodes on one PostgreSQL, and what can happen to them. Usage: fleet_test.py LEAFCUTTER
 The short run is for every day; LEAFCUTTER_FLEET_LONG=1 adds that of long_run.py."""
+import http.server
+import json
 import signal
 import sys
+import threading
 import time
 import unittest
 
@@ -133,6 +136,76 @@ class FleetTest(FleetCase):
         time.sleep(self.fleet.lease_s)
         self.assertEqual(self.api.call("GET", f"/cuts/{cut}")[1]["state"], "interrupted")
         self.assertEqual(burnt(station.burns), before)
+
+
+class Receiver(http.server.ThreadingHTTPServer):
+    """Of a webhook: the deliveries, in the order of their arrival."""
+    daemon_threads = True
+
+    def __init__(self, address):
+        self.deliveries = []
+        receiver = self
+
+        class Handler(http.server.BaseHTTPRequestHandler):
+            def do_POST(self):
+                body = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+                receiver.deliveries.append((int(self.headers["X-Leafcutter-Delivery"]), body["id"], body["change"]))
+                self.send_response(204)
+                self.end_headers()
+
+            def log_message(self, *_):
+                pass
+
+        super().__init__((address, 0), Handler)
+        threading.Thread(target=self.serve_forever, daemon=True).start()
+
+    @property
+    def config(self):
+        address, port = self.server_address
+        return (f'[[webhook]]\nurl = "http://{address}:{port}/hook"\nsecret = "a secret of the hook"\n'
+                'events = ["job"]\nallow_private = true\n')
+
+
+class DutiesTest(FleetCase):
+    def duty(self, name, node=None):
+        duties = (node or self.api).call("GET", "/fleet")[1]["duties"]
+        return next((duty["node"] for duty in duties if name in duty["duty"] and duty["held"]), None)
+
+    def test_two_api_nodes_with_one_webhook_tell_each_event_once(self):
+        receiver = Receiver(self.fleet.postgres.address)
+        self.addCleanup(receiver.server_close)
+        self.addCleanup(receiver.shutdown)
+        self.populate(apis=2, stations=0, api={"config": receiver.config})
+        first = wait(lambda: self.duty("webhook"), lambda node: node)
+        self.assertIn(wait(lambda: self.duty("housekeeping"), lambda node: node), ("api0", "api1"))
+        jobs = [self.submit(f"plate-{number}", 60 + number) for number in range(3)]
+        for job in jobs:
+            self.ready(job)
+        told = lambda job: [change for _, id, change in receiver.deliveries if id == job]
+        for job in jobs:
+            wait(lambda: told(job), lambda changes: "computing -> ready" in changes)
+        ids = [delivery for delivery, _, _ in receiver.deliveries]
+        self.assertEqual(ids, sorted(set(ids)))
+        # The one that tells dies: the other one goes on, and leaves nothing out.
+        self.fleet.nodes[first].kill()
+        self.api = next(node for node in self.fleet.nodes.values() if node.role == "api" and node.name != first)
+        last = self.submit("plate-last")
+        wait(lambda: told(last), lambda changes: "computing -> ready" in changes)
+        self.assertEqual(self.duty("webhook"), self.api.name)
+        job_events = int(self.fleet.postgres.ask("SELECT count(*) FROM event WHERE type = 'job'"))
+        self.assertEqual(len({delivery for delivery, _, _ in receiver.deliveries}), job_events)
+
+    def test_a_sheet_framed_at_a_station_is_framed_everywhere(self):
+        self.populate(apis=2, auto_start=False)
+        cut = self.cut(self.ready(self.submit("plate"))["id"], "station0")
+        framed = lambda node: [step["done"] for step in node.call("GET", f"/cuts/{cut}")[1]["steps"]
+                               if step["step"] == "frame"]
+        self.assertEqual(framed(self.api), [False])
+        device = self.fleet.nodes["station0"].device
+        wait(lambda: self.api.call("GET", f"/devices/{device}")[1]["status"]["state"], lambda state: state == "idle")
+        self.assertEqual(self.api.call("POST", f"/devices/{device}/commands", {"command": "frame"})[0], 202)
+        for name in ("api0", "api1", "station0"):
+            wait(lambda: framed(self.fleet.nodes[name]), lambda done: done == [True])
 
 
 if __name__ == "__main__":
