@@ -28,7 +28,7 @@ async function remove(job: Job): Promise<void> {
 
 // Opens the form with this job's own parameters in it.
 function weaveAgain(job: Job): void {
-  changeDraft({ type: 'again', job: job.id, name: job.name, params: job.params });
+  changeDraft({ type: 'again', job: job.id, name: job.name, file: job.file.name, params: job.params });
   go({ page: 'jobs' });
 }
 

@@ -60,6 +60,7 @@ export const result = {
     show: (what: string) => `In 3D zeigen: ${what}`,
     overall: 'Ganze Fläche',
     perCylinder: 'Nach Zylinder',
+    gridQuads: 'Vierecke (Reihen, Spalten)',
     cylinder: (number: string) => `Zylinder ${number}`,
     quads: 'Vierecke',
     average: 'Mittel',

@@ -60,6 +60,7 @@ export const result = {
     show: (what: string) => `Show in 3D: ${what}`,
     overall: 'Whole surface',
     perCylinder: 'By cylinder',
+    gridQuads: 'Quads (rows, columns)',
     cylinder: (number: string) => `Cylinder ${number}`,
     quads: 'Quads',
     average: 'Average',

@@ -60,6 +60,7 @@ export const result = {
     show: (what: string) => `Mostrar en 3D: ${what}`,
     overall: 'Superficie entera',
     perCylinder: 'Por cilindro',
+    gridQuads: 'Cuadros (filas, columnas)',
     cylinder: (number: string) => `Cilindro ${number}`,
     quads: 'Cuadros',
     average: 'Media',

@@ -60,6 +60,7 @@ export const result = {
     show: (what: string) => `Montrer en 3D : ${what}`,
     overall: 'Surface entière',
     perCylinder: 'Par cylindre',
+    gridQuads: 'Quads (rangs, colonnes)',
     cylinder: (number: string) => `Cylindre ${number}`,
     quads: 'Quads',
     average: 'Moyenne',

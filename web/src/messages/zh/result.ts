@@ -60,6 +60,7 @@ export const result = {
     show: (what: string) => `三维显示：${what}`,
     overall: '整个曲面',
     perCylinder: '按柱面',
+    gridQuads: '四边形（行，列）',
     cylinder: (number: string) => `柱面 ${number}`,
     quads: '四边形',
     average: '平均',
