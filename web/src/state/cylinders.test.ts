@@ -61,3 +61,10 @@ test('typed heights count where there are as many as cylinders', () => {
   assert.equal(withHeight('', woven, 1, 7.12345), '20, 7.12');
   assert.equal(withHeight('3, 4', woven, 0, 6), '6, 4');
 });
+
+test('a surface with holes at its tips was cut in the best of its ways', () => {
+  const named = (name: string, chosen = false) => ({ name, chosen });
+  const holed = 'pants with 5 holes';
+  const alternatives = [named('disk'), named(holed, true), named(`${holed}: pants reeb-z, equal weights`), named(`${holed}: pants reeb-x, equal weights`)];
+  assert.equal(wovenCylinders({ ...kReport, foliation: { ...kReport.foliation, alternatives } })?.sweep, 'z');
+});

@@ -20,14 +20,22 @@ const at = (value: unknown, key: string): unknown => (typeof value === 'object' 
 const listOf = (value: unknown): readonly unknown[] => (Array.isArray(value) ? value : []);
 const isNumber = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
 
+// The name of the decomposition that was chosen. One with holes is named without it: its own ways follow it,
+// the best one first.
+function chosenWay(foliation: unknown): string {
+  const alternatives = listOf(at(foliation, 'alternatives'));
+  const chosen = String(at(alternatives.find((one) => at(one, 'chosen') === true), 'name') ?? '');
+  const names = alternatives.map((one) => String(at(one, 'name')));
+  return /pants \S+, /.test(chosen) ? chosen : (names.find((name) => name.startsWith(`${chosen}: pants `)) ?? chosen);
+}
+
 // Null where the surface is not cut into several cylinders.
 export function wovenCylinders(report: Params): WovenCylinders | null {
   const foliation = report['foliation'];
   const heights = listOf(at(foliation, 'weights')).filter(isNumber);
   const scale = at(report['input'], 'scale');
   if (at(foliation, 'mode') !== 'pants' || heights.length < 2 || !isNumber(scale)) return null;
-  const chosen = listOf(at(foliation, 'alternatives')).find((one) => at(one, 'chosen') === true);
-  const [, source, sweep] = /pants ([a-z-]+)-([a-z]+)/.exec(String(at(chosen, 'name') ?? '')) ?? [];
+  const [, source, sweep] = /pants ([a-z-]+)-([a-z]+)/.exec(chosenWay(foliation)) ?? [];
   return {
     heights,
     edgeOf: listOf(at(foliation, 'cylinders')).map((one, index) => Number(at(one, 'graph_edge') ?? index)),

@@ -42,7 +42,7 @@ export const fields = {
       loops: { name: 'Schleifen', hint: 'Einige Ecken um jede Schleife; die erste noch einmal schließt sie' },
       sources: { name: 'Beginn an Rändern', hint: 'Ränder mit ihrer Nummer; neben einen klicken' },
       sinks: { name: 'Ende an Rändern', hint: 'Ränder mit ihrer Nummer; neben einen klicken' },
-      weights: { name: 'Gewichte', hint: 'Höhen der Zylinder; nach dem ersten Weben am Modell zu wählen' },
+      weights: { name: 'Gewichte', hint: 'Nach dem ersten Weben am Modell zu wählen' },
     },
   },
   params: {

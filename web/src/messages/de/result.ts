@@ -107,5 +107,7 @@ export const result = {
     chosen: 'gewählt',
     more: (count: number) => `${count} weitere Arten, gleich zu zerlegen`,
     recompute: 'So weben',
+    withHoles: (mode: string, holes: number) => `${mode}, ${holes === 1 ? '1 Loch' : `${holes} Löcher`}`,
+    ways: { 'equal weights': 'gleiche Höhen', 'weights by length': 'Höhen nach Länge', evened: 'ausgeglichen' },
   },
 };

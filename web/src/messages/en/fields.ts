@@ -42,7 +42,7 @@ export const fields = {
       loops: { name: 'Loops', hint: 'A few vertices around each loop; the first one again closes it' },
       sources: { name: 'Begin at boundaries', hint: 'Boundary loops by number; click beside one' },
       sinks: { name: 'End at boundaries', hint: 'Boundary loops by number; click beside one' },
-      weights: { name: 'Weights', hint: 'Heights of the cylinders; after the first weave they are picked on the model' },
+      weights: { name: 'Weights', hint: 'After the first weave: picked on the model' },
     },
   },
   params: {

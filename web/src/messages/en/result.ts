@@ -107,5 +107,7 @@ export const result = {
     chosen: 'chosen',
     more: (count: number) => `${count} more ways to cut the same`,
     recompute: 'Weave like this',
+    withHoles: (mode: string, holes: number) => `${mode}, ${holes === 1 ? '1 hole' : `${holes} holes`}`,
+    ways: { 'equal weights': 'equal heights', 'weights by length': 'heights by length', evened: 'made even' },
   },
 };

@@ -42,7 +42,7 @@ export const fields = {
       loops: { name: 'Lazos', hint: 'Unos vértices alrededor de cada lazo; el primero otra vez lo cierra' },
       sources: { name: 'Empezar en bordes', hint: 'Bordes por número; pulse junto a uno' },
       sinks: { name: 'Acabar en bordes', hint: 'Bordes por número; pulse junto a uno' },
-      weights: { name: 'Pesos', hint: 'Alturas de los cilindros; tras el primer tejido se eligen en el modelo' },
+      weights: { name: 'Pesos', hint: 'Tras el primer tejido, se eligen en el modelo' },
     },
   },
   params: {

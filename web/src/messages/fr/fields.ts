@@ -42,7 +42,7 @@ export const fields = {
       loops: { name: 'Boucles', hint: 'Quelques sommets autour de chaque boucle ; le premier à nouveau la ferme' },
       sources: { name: 'Commencer aux bords', hint: 'Bords par numéro ; cliquez à côté' },
       sinks: { name: 'Finir aux bords', hint: 'Bords par numéro ; cliquez à côté' },
-      weights: { name: 'Poids', hint: 'Hauteurs des cylindres ; après le premier tissage, au choix sur le modèle' },
+      weights: { name: 'Poids', hint: 'Après le premier tissage, au choix sur le modèle' },
     },
   },
   params: {

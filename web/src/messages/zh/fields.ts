@@ -42,7 +42,7 @@ export const fields = {
       loops: { name: '环线', hint: '每条环线取几个顶点；再点第一个即闭合' },
       sources: { name: '起始边界', hint: '按编号的边界；在其旁点击' },
       sinks: { name: '终止边界', hint: '按编号的边界；在其旁点击' },
-      weights: { name: '权重', hint: '各柱面的高度；第一次编织之后可在模型上选取' },
+      weights: { name: '权重', hint: '首次编织后可在模型上选取' },
     },
   },
   params: {

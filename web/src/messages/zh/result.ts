@@ -107,5 +107,7 @@ export const result = {
     chosen: '已选',
     more: (count: number) => `另有 ${count} 种同类分解`,
     recompute: '按此编织',
+    withHoles: (mode: string, holes: number) => `${mode}，${holes} 个孔`,
+    ways: { 'equal weights': '等高', 'weights by length': '高度按长度', evened: '已均匀化' },
   },
 };
