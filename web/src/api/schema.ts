@@ -385,6 +385,7 @@ export type Call =
   | "POST /test-cards"
   | "GET /jobs/{id}/artifacts"
   | "GET /jobs/{id}/artifacts/{path}"
+  | "GET /jobs/{id}/mesh"
   | "GET /jobs/{id}/package.zip"
   | "GET /jobs/{id}/events"
   | "POST /jobs/{id}/cuts"
