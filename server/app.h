@@ -17,6 +17,7 @@
 #include "server/auth/audit_log.h"
 #include "server/auth/login_limit.h"
 #include "server/config.h"
+#include "server/fleet/duties.h"
 #include "server/fleet/fleet_node.h"
 #include "server/fleet/peers.h"
 #include "server/fleet/remote_views.h"
@@ -102,6 +103,7 @@ private:
     const AppParts parts_;
     const std::filesystem::path burn_logs_;  // Folder of simulated machines' beam logs.
     FleetSelf self_;
+    Duties duties_;
     Peers peers_;
     RemoteViews remote_;
     EventHub hub_;

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -50,6 +51,10 @@ Config wanted_config(const ServeOptions& options) {
         }
         if (!options.store.empty()) {
             config.store = options.store;
+        }
+        // A secret: no argument, which everybody on the host could read.
+        if (const char* key = std::getenv("LEAFCUTTER_FLEET_KEY"); key != nullptr) {
+            config.fleet_key = key;
         }
         if (!options.node.empty()) {
             config.node = options.node;
@@ -136,9 +141,10 @@ void add_serve_command(CLI::App& app, const CommonOptions&) {
     command->add_option("--config", options->config, "TOML file")->check(CLI::ExistingFile);
     command->add_option("--listen", options->listen, "ADDRESS:PORT; 127.0.0.1:8080 if not given");
     command->add_option("--state", options->state, "Folder of the database and the files");
-    command->add_option(
-        "--store", options->store,
-        "postgresql://… that a fleet shares; SQLite in the state folder if not given");
+    command
+        ->add_option("--store", options->store,
+                     "postgresql://… that a fleet shares; SQLite in the state folder if not given")
+        ->envname("LEAFCUTTER_STORE");
     command->add_option("--role", options->role, "What this node does in a fleet")
         ->check(CLI::IsMember({"all", "api", "worker", "station"}));
     command->add_option("--node", options->node, "Its name in a fleet; the host's if not given");

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -139,10 +140,10 @@ public:
                                                    const std::string& path) const = 0;
     virtual bool refers_to_blob(const std::string& sha256) const = 0;
 
-    // Of jobs that ended before `before_ms` and have no cut under way, at most `limit`. Returns how
-    // many: those removed with all their rows, or those whose package was let go.
-    virtual int remove_finished(std::int64_t before_ms, int limit) = 0;
-    virtual int drop_packages(std::int64_t before_ms, int limit) = 0;
+    // Of jobs that ended longer ago than `age` and have no cut under way, at most `limit`. Returns
+    // how many: those removed with all their rows, or those whose package was let go.
+    virtual int remove_finished(std::chrono::milliseconds age, int limit) = 0;
+    virtual int drop_packages(std::chrono::milliseconds age, int limit) = 0;
 
     virtual std::int64_t count(JobState state) const = 0;
 

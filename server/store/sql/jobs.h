@@ -39,8 +39,8 @@ public:
     std::optional<ArtifactRecord> artifact(const std::string& job,
                                            const std::string& path) const override;
     bool refers_to_blob(const std::string& sha256) const override;
-    int remove_finished(std::int64_t before_ms, int limit) override;
-    int drop_packages(std::int64_t before_ms, int limit) override;
+    int remove_finished(std::chrono::milliseconds age, int limit) override;
+    int drop_packages(std::chrono::milliseconds age, int limit) override;
     std::int64_t count(JobState state) const override;
     void recover() override;
 
