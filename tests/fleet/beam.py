@@ -2,14 +2,13 @@
 import hashlib
 import json
 import math
-import sys
-from pathlib import Path
 import re
+import sys
 from collections import Counter, defaultdict
+from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1] / "support"))
 from flat_mesh import plate  # noqa: E402
-
 
 PLATE = plate(4, 3)
 SHA = hashlib.sha256(PLATE).hexdigest()
