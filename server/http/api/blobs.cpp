@@ -94,6 +94,12 @@ Response part_taken(const PartialBlob& part) {
     return response;
 }
 
+HttpProblem upload_gap(std::int64_t here) {
+    HttpProblem gap(409, "upload-gap", fmt::format("{} bytes are here: go on from there", here));
+    gap.headers["Upload-Offset"] = std::to_string(here);
+    return gap;
+}
+
 Response take_piece(App& app, Request& request, const std::string& sha256, const Piece& piece) {
     PartialBlob part(app.store().blobs, sha256);
     if (!part.is_ours()) {
@@ -103,10 +109,7 @@ Response take_piece(App& app, Request& request, const std::string& sha256, const
         return part_taken(part);
     }
     if (piece.first > part.bytes()) {
-        HttpProblem gap(409, "upload-gap",
-                        fmt::format("{} bytes are here: go on from there", part.bytes()));
-        gap.headers["Upload-Offset"] = std::to_string(part.bytes());
-        throw gap;
+        throw upload_gap(part.bytes());
     }
     check_room(app, piece.whole - part.bytes());
     part.cut_to(piece.first);
