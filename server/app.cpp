@@ -1,9 +1,11 @@
 #include "server/app.h"
 
 #include <algorithm>
+#include <sys/resource.h>
 #include <thread>
 #include <utility>
 
+#include <climits>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -17,8 +19,25 @@ namespace leafcutter::server {
 
 namespace {
 
+// Files are numbered from below: of those that may be open, the last ones are kept for the store,
+// the machines and computations, however many connections come.
+void share_files(EdgeOptions& options) {
+    constexpr rlim_t kKept = 32;
+    constexpr rlim_t kLeast = 16;
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur <= 2 * kKept) {
+        return;
+    }
+    const rlim_t shared = files.rlim_cur - kKept;
+    options.most_fd = static_cast<int>(std::min<rlim_t>(shared, INT_MAX));
+    options.most_streams = std::max(kLeast, (shared - kKept) / 4);
+    options.parking.connections =
+        std::min<std::size_t>(options.parking.connections, std::max(kLeast, (shared - kKept) / 2));
+}
+
 EdgeOptions edge_options(const Config& config) {
     EdgeOptions options;
+    share_files(options);
     options.address = config.listen.address;
     options.port = config.listen.port;
     options.workers = config.http_workers;

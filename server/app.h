@@ -49,8 +49,8 @@ struct AppParts {
     // Throws geometry::Error for job parameters that can't be.
     std::function<void(const std::string& params_json)> check_params;
 
-    // Within seconds. Throws geometry::Error.
-    std::function<ComputeOutput(const RecutCall&)> recut;
+    // At once. Throws geometry::Error for pieces that can't be cut again.
+    std::function<void(const RecutCall&)> check_recut;
 
     // At once. Throws geometry::Error.
     std::function<ComputeOutput(const std::string& wish_json,

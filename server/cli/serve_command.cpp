@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <sys/resource.h>
 #include <unistd.h>
 #include <utility>
 
@@ -98,8 +99,18 @@ ComputeBudget budget_of(const Config& config) {
     return budget;
 }
 
+// As many files as the host allows: live events alone may be a thousand.
+void open_all_files() {
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) == 0) {
+        files.rlim_cur = files.rlim_max;
+        ::setrlimit(RLIMIT_NOFILE, &files);
+    }
+}
+
 void serve(const ServeOptions& options) {
     std::signal(SIGPIPE, SIG_IGN);
+    open_all_files();
     const InterruptWatch interrupt;
     const Config config = wanted_config(options);
     begin_log(config.log_format);
@@ -107,7 +118,7 @@ void serve(const ServeOptions& options) {
     parts.compute = compute_in_child(budget_of(config));
     parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
     parts.check_params = check_job_params;
-    parts.recut = recut_job_pieces;
+    parts.check_recut = check_job_recut;
     parts.test_card = make_test_card;
     const std::unique_ptr<App> app = started(config, std::move(parts));
     const bool v6 = config.listen.address.find(':') != std::string::npos;

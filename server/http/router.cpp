@@ -30,6 +30,7 @@ constexpr Route kRoutes[] = {
     {"POST", "/api/v1/test-cards", create_test_card, Role::Submitter},
     {"GET", "/api/v1/jobs/{id}/artifacts", list_artifacts, Role::Viewer},
     {"GET", "/api/v1/jobs/{id}/artifacts/{path...}", show_artifact, Role::Viewer},
+    {"GET", "/api/v1/jobs/{id}/mesh", show_mesh, Role::Viewer},
     {"GET", "/api/v1/jobs/{id}/package.zip", show_package, Role::Viewer},
     {"GET", "/api/v1/jobs/{id}/events", stream_job_events, Role::Viewer},
     {"POST", "/api/v1/jobs/{id}/cuts", create_cut, Role::Operator},

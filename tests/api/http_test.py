@@ -128,6 +128,16 @@ class Artifacts(Http):
         self.assertEqual(self.daemon.exchange("GET", path, None, stale)[2], whole)
         self.assertEqual(self.daemon.exchange("GET", path, None, {"If-None-Match": headers["ETag"]})[0], 304)
 
+    def test_the_mesh_comes_back_as_it_was_sent(self):
+        job = self.get(f"/jobs/{self.job}")[1]
+        path = f"/api/v1/jobs/{self.job}/mesh"
+        _, headers, mesh = self.daemon.exchange("GET", path)
+        self.assertEqual(hashlib.sha256(mesh).hexdigest(), job["file"]["sha256"])
+        self.assertIn(job["file"]["name"], headers["Content-Disposition"])
+        self.assertEqual(self.daemon.exchange("GET", path, None, {"Range": "bytes=0-9"})[2], mesh[:10])
+        self.assertEqual(self.daemon.exchange("GET", path, None, {"If-None-Match": headers["ETag"]})[0], 304)
+        self.assertEqual(self.daemon.exchange("GET", "/api/v1/jobs/nobody/mesh")[0], 404)
+
     def test_the_zip_is_the_package(self):
         _, _, body = self.daemon.exchange("GET", f"/api/v1/jobs/{self.job}/package.zip")
         with zipfile.ZipFile(io.BytesIO(body)) as package:

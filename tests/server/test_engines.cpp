@@ -115,6 +115,19 @@ TEST_P(EngineTest, ManyClaimersNeverShareAJob) {
     EXPECT_EQ(claimed.size(), static_cast<std::size_t>(kJobs));
 }
 
+TEST_P(EngineTest, PiecesThatAreWantedAgainCanBeClaimedApart) {
+    const JobRecord model = add();
+    NewJob pieces{"pieces", {"n.obj", 3, sha256_of("abc")}, "{}", model.id, R"({"pieces":["W1"]})"};
+    const JobRecord recut = store->jobs().add(pieces, std::nullopt).job;
+    EXPECT_EQ(recut.recut_of, model.id);
+    EXPECT_EQ(recut.recut_json, pieces.recut_json);
+    EXPECT_EQ(store->jobs().claim_recut()->id, recut.id);
+    EXPECT_FALSE(store->jobs().claim_recut());
+    store->jobs().requeue({recut.id});
+    EXPECT_EQ(store->jobs().claim()->id, model.id);
+    EXPECT_EQ(store->jobs().claim()->id, recut.id);  // Any worker takes it when it is next.
+}
+
 TEST_P(EngineTest, TheSameKeyGivesTheSameJob) {
     const NewJob job{"n", {"n.obj", 3, sha256_of("abc")}, "{}"};
     const AddedJob first = store->jobs().add(job, IdempotencyKey{"k", "hash"});

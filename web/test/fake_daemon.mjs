@@ -29,6 +29,7 @@ export class FakeDaemon {
     this.pace = pace;
     this.jobs = new Map();
     this.cuts = new Map();
+    this.meshes = new Map(); // What was sent, by job.
     this.packages = new Map();
     this.devices = new Map();
     this.log = [];

@@ -114,6 +114,7 @@ async function createJob(daemon, request, response) {
   const job = daemon.addJob({
     name: form.get('name'), params: JSON.parse(text), file: { name: mesh.name, bytes: mesh.size, sha256: '0'.repeat(64) },
   });
+  daemon.meshes.set(job.id, await mesh.text());
   response.setHeader('Location', `/api/v1/jobs/${job.id}`);
   sendJson(response, 201, job);
 }
@@ -121,7 +122,14 @@ async function createJob(daemon, request, response) {
 async function recomputeJob(daemon, id, request, response) {
   const { name, params, file } = daemon.job(id);
   const job = daemon.addJob({ name, params: (await jsonOf(request)).params ?? params, file });
+  daemon.meshes.set(job.id, daemon.meshes.get(id));
   sendJson(response, 201, job);
+}
+
+function sendMesh(daemon, id, response) {
+  const text = daemon.meshes.get(id) ?? daemon.missing('mesh', id);
+  response.writeHead(200, { 'Content-Type': 'application/octet-stream', 'Content-Disposition': 'attachment' });
+  response.end(text);
 }
 
 function artifactFiles(daemon, id) {
@@ -147,6 +155,7 @@ const kRoutes = [
   ['DELETE', /^\/jobs\/([^/]+)$/, (d, [id], q, r) => { d.removeJob(id); r.writeHead(204).end(); }],
   ['GET', /^\/jobs\/([^/]+)\/artifacts$/, (d, [id], q, r) => sendJson(r, 200, listArtifacts(d, id))],
   ['GET', /^\/jobs\/([^/]+)\/artifacts\/(.+)$/, (d, [id, name], q, r) => sendArtifact(d, r, id, name)],
+  ['GET', /^\/jobs\/([^/]+)\/mesh$/, (d, [id], q, r) => sendMesh(d, id, r)],
   ['POST', /^\/jobs\/([^/]+)\/recompute$/, (d, [id], q, r) => recomputeJob(d, id, q, r)],
   ['POST', /^\/jobs\/([^/]+)\/cuts$/, async (d, [id], q, r) => sendJson(r, 201, d.view(d.addCut(id, await jsonOf(q))))],
   ['GET', /^\/cuts$/, (d, _, q, r) => sendJson(r, 200, { cuts: d.snapshot().cuts })],

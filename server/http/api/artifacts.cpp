@@ -81,6 +81,40 @@ std::string attachment(const std::string& name) {
     return fmt::format("attachment; filename=\"{}\"; filename*=UTF-8''{}", plain, encoded);
 }
 
+struct ServedFile {
+    std::string name;
+    std::string sha256;
+    std::int64_t bytes = 0;
+    std::string media_type;
+};
+
+// A stored file, all of it or the range that is asked for; none of it if the asker has it already.
+Response file_response(App& app, const Request& request, const ServedFile& served) {
+    Response response;
+    response.headers["ETag"] = fmt::format("\"{}\"", served.sha256);
+    response.headers["Accept-Ranges"] = "bytes";
+    response.headers["Cache-Control"] = "private, no-cache";
+    const std::string seen = request.header("if-none-match").value_or("");
+    if (seen == "*" || seen.find(served.sha256) != std::string::npos) {
+        response.status = 304;
+        return response;
+    }
+    response.content_type = served.media_type;
+    response.headers["Content-Disposition"] = attachment(served.name);
+    auto file = std::make_shared<FileHandle>(app.store().blobs.open(served.sha256));
+    response.file = FilePart{std::move(file), 0, served.bytes};
+    const auto range = range_in(request, served.bytes);
+    const std::string validator = request.header("if-range").value_or(response.headers["ETag"]);
+    if (range && validator == response.headers["ETag"]) {
+        response.status = 206;
+        response.file->offset = range->first;
+        response.file->bytes = range->last - range->first + 1;
+        response.headers["Content-Range"] =
+            fmt::format("bytes {}-{}/{}", range->first, range->last, served.bytes);
+    }
+    return response;
+}
+
 }  // namespace
 
 Response list_artifacts(App& app, Request& request) {
@@ -100,29 +134,18 @@ Response show_artifact(App& app, Request& request) {
     if (!artifact) {
         throw HttpProblem(404, "no-such-artifact", "the job has no such file");
     }
-    Response response;
-    response.headers["ETag"] = fmt::format("\"{}\"", artifact->sha256);
-    response.headers["Accept-Ranges"] = "bytes";
-    response.headers["Cache-Control"] = "private, no-cache";
-    const std::string seen = request.header("if-none-match").value_or("");
-    if (seen == "*" || seen.find(artifact->sha256) != std::string::npos) {
-        response.status = 304;
-        return response;
+    return file_response(
+        app, request,
+        {file_name_of(artifact->path), artifact->sha256, artifact->bytes, artifact->media_type});
+}
+
+Response show_mesh(App& app, Request& request) {
+    const SourceFile file = find_job(app, request).file;
+    if (file.sha256.empty() || !app.store().blobs.size(file.sha256)) {
+        throw HttpProblem(404, "no-mesh", "the job has no mesh, or it is no longer kept");
     }
-    response.content_type = artifact->media_type;
-    response.headers["Content-Disposition"] = attachment(file_name_of(artifact->path));
-    auto file = std::make_shared<FileHandle>(app.store().blobs.open(artifact->sha256));
-    response.file = FilePart{std::move(file), 0, artifact->bytes};
-    const auto range = range_in(request, artifact->bytes);
-    const std::string validator = request.header("if-range").value_or(response.headers["ETag"]);
-    if (range && validator == response.headers["ETag"]) {
-        response.status = 206;
-        response.file->offset = range->first;
-        response.file->bytes = range->last - range->first + 1;
-        response.headers["Content-Range"] =
-            fmt::format("bytes {}-{}/{}", range->first, range->last, artifact->bytes);
-    }
-    return response;
+    return file_response(app, request,
+                         {file.name, file.sha256, file.bytes, "application/octet-stream"});
 }
 
 Response show_package(App& app, Request& request) {

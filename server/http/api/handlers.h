@@ -34,6 +34,7 @@ Response create_test_card(App& app, Request& request);
 // artifacts.cpp
 Response list_artifacts(App& app, Request& request);
 Response show_artifact(App& app, Request& request);
+Response show_mesh(App& app, Request& request);
 Response show_package(App& app, Request& request);
 
 // cuts.cpp

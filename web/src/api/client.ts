@@ -139,6 +139,11 @@ export function packageUrl(job: string): string {
   return `${kApi}/jobs/${job}/package.zip`;
 }
 
+// The mesh that a job was made from, as it was sent.
+export async function jobMesh(job: string): Promise<ArrayBuffer> {
+  return (await answer(`/jobs/${job}/mesh`, {})).arrayBuffer();
+}
+
 export async function artifactText(job: string, path: string): Promise<string> {
   const url = artifactUrl(job, path).slice(kApi.length);
   return (await answer(url, {})).text();

@@ -365,6 +365,11 @@ export type Fleet = {
     readonly held: boolean;
     readonly left_s: number;
   })[];
+  readonly duties: readonly ({
+    readonly duty: string;
+    readonly node: string;
+    readonly held: boolean;
+  })[];
   readonly claims: readonly ({
     readonly job: string;
     readonly worker: string;
@@ -385,6 +390,7 @@ export type Call =
   | "POST /test-cards"
   | "GET /jobs/{id}/artifacts"
   | "GET /jobs/{id}/artifacts/{path}"
+  | "GET /jobs/{id}/mesh"
   | "GET /jobs/{id}/package.zip"
   | "GET /jobs/{id}/events"
   | "POST /jobs/{id}/cuts"

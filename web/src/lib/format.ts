@@ -43,10 +43,10 @@ export function clock(seconds: number): string {
   return hours > 0 ? `${hours}:${two(minutes)}:${two(whole % 60)}` : `${minutes}:${two(whole % 60)}`;
 }
 
-export function dateTime(rfc3339: string): string {
+export function dateTime(rfc3339: string, timeStyle: 'short' | 'medium' = 'short'): string {
   const then = new Date(rfc3339);
   if (Number.isNaN(then.getTime())) return '';
-  return new Intl.DateTimeFormat(locale, { dateStyle: 'medium', timeStyle: 'short' }).format(then);
+  return new Intl.DateTimeFormat(locale, { dateStyle: 'medium', timeStyle }).format(then);
 }
 
 // Under 10 kg in grams.

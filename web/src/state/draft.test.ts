@@ -77,7 +77,7 @@ test('places count for one file alone, in the modes that have them', () => {
 
 test('a job that is woven again begins with its own parameters', () => {
   const params = draftParams({ ...kNewDraft, mode: 'disk', pattern: 'satin-5', stripWidthMm: '7.5', units: 'mm', more: { 'fit.joint': 'slot' } });
-  const again = reduceDraft(kNewDraft, { type: 'again', job: 'j1', name: 'Vase', params });
+  const again = reduceDraft(kNewDraft, { type: 'again', job: 'j1', name: 'Vase', file: 'vase.obj', params });
   assert.deepEqual(draftParams(again), params);
   assert.equal(again.again?.job, 'j1');
   assert.equal(reduceDraft(again, { type: 'clear' }).again, null);
@@ -89,4 +89,15 @@ test('every repeat is a full matrix in which both families come to the top', () 
     assert.ok(rows.every((row) => row.length === rows[0]?.length), pattern);
     assert.ok(cells.includes(0) && cells.includes(1), pattern);
   }
+});
+
+test('sheets at hand and the machine it is made for are said, and read back', () => {
+  const draft = { ...kNewDraft, sheets: 'only' as const, machine: 'big', more: { 'nesting.time_s': '3', 'output.dialect': 'marlin' } };
+  const params = draftParams(draft);
+  assert.deepEqual(params['nesting'], { time_s: 3, stock: 'store', only_stock: true });
+  assert.deepEqual(params['output'], { dialect: 'marlin', device: 'big' });
+  const again = reduceDraft(kNewDraft, { type: 'again', job: 'j1', name: 'Vase', file: 'vase.obj', params });
+  assert.deepEqual([again.sheets, again.machine], ['only', 'big']);
+  assert.deepEqual(draftParams(again), params);
+  assert.equal('nesting' in draftParams(kNewDraft), false);
 });

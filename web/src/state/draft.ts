@@ -20,21 +20,33 @@ import { kNoPicks, pickFault, pickParams, type Picks, picksOf } from './picks.ts
 export const kPatterns = ['plain', 'twill-2x2', 'double-warp', 'double-weft', 'satin-5', 'basket-2x2'] as const;
 export type Pattern = (typeof kPatterns)[number];
 
+// New sheets, those at hand before new ones, or nothing but those at hand.
+export const kSheetSources = ['new', 'stock', 'only'] as const;
+export type SheetSource = (typeof kSheetSources)[number];
+
 export interface DraftFile {
   readonly key: number;
   readonly file: File;
   readonly name: string;
 }
 
+interface Again {
+  readonly job: string;
+  readonly name: string;
+  readonly file: string; // Name of its mesh's file.
+}
+
 export interface Draft {
   readonly files: readonly DraftFile[];
-  readonly again: { readonly job: string; readonly name: string } | null; // A job to be woven once more.
+  readonly again: Again | null; // A job to be woven once more.
   readonly units: 'longest' | 'mm'; // Scaled to a length, or the file's numbers are millimetres.
   readonly longestSideMm: string; // As typed.
   readonly stripWidthMm: string;
   readonly pattern: Pattern;
   readonly weft: string; // Material ids; empty: the daemon's choice.
   readonly warp: string;
+  readonly sheets: SheetSource;
+  readonly machine: string; // Id of the one it is made for; empty: any.
   readonly mode: FoliationMode;
   readonly pants: PantsSource; // These two count in the modes of usesPants() alone.
   readonly sweep: SweepFunction;
@@ -53,6 +65,8 @@ export const kNewDraft: Draft = {
   pattern: 'plain',
   weft: '',
   warp: '',
+  sheets: 'new',
+  machine: '',
   mode: 'auto',
   pants: 'reeb',
   sweep: 'auto',
@@ -68,7 +82,7 @@ export type DraftAction =
   | { readonly type: 'drop'; readonly key: number }
   | { readonly type: 'rename'; readonly key: number; readonly name: string }
   | { readonly type: 'set'; readonly values: Partial<Omit<Draft, 'files' | 'again'>> }
-  | { readonly type: 'again'; readonly job: string; readonly name: string; readonly params: Params }
+  | ({ readonly type: 'again'; readonly params: Params } & Again)
   | { readonly type: 'preset'; readonly params: Params }
   | { readonly type: 'clear' };
 
@@ -96,7 +110,7 @@ export function reduceDraft(draft: Draft, action: DraftAction): Draft {
     case 'set':
       return { ...draft, ...action.values };
     case 'again':
-      return { ...draftOf(action.params), again: { job: action.job, name: action.name } };
+      return { ...draftOf(action.params), again: { job: action.job, name: action.name, file: action.file } };
     case 'preset':
       return { ...draftOf(action.params), files: draft.files, again: draft.again, picks: draft.picks };
     case 'clear':
@@ -139,6 +153,11 @@ function foliationParams(draft: Draft): Readonly<Record<string, unknown>> {
   };
 }
 
+function stockParams(sheets: SheetSource): Params {
+  if (sheets === 'new') return {};
+  return sheets === 'only' ? { stock: 'store', only_stock: true } : { stock: 'store' };
+}
+
 // The job parameters that `draft` stands for. Only for a draft without fault.
 export function draftParams(draft: Draft): Readonly<Record<string, unknown>> {
   const material = {
@@ -146,13 +165,17 @@ export function draftParams(draft: Draft): Readonly<Record<string, unknown>> {
     ...(draft.warp === '' ? {} : { warp: draft.warp }),
   };
   const foliation = foliationParams(draft);
-  const { grid, weave, ...more } = moreParams(draft.more);
+  const { grid, weave, nesting, output, ...more } = moreParams(draft.more);
+  const placing = { ...nesting, ...stockParams(draft.sheets) };
+  const made = { ...output, ...(draft.machine === '' ? {} : { device: draft.machine }) };
   return {
     scale: draft.units === 'mm' ? { units: 'mm' } : { longest_side_mm: positive(draft.longestSideMm) },
     ...(Object.keys(foliation).length === 0 ? {} : { foliation }),
     grid: { strip_width_mm: positive(draft.stripWidthMm), may_narrow: true, ...grid },
     weave: { pattern: draft.pattern, ...weave },
     ...(Object.keys(material).length === 0 ? {} : { material }),
+    ...(Object.keys(placing).length === 0 ? {} : { nesting: placing }),
+    ...(Object.keys(made).length === 0 ? {} : { output: made }),
     ...more,
   };
 }
@@ -160,6 +183,13 @@ export function draftParams(draft: Draft): Readonly<Record<string, unknown>> {
 function within(params: Params, group: string, key: string): unknown {
   const part = params[group];
   return typeof part === 'object' && part !== null ? (part as Params)[key] : undefined;
+}
+
+function sheetSourceOf(params: Params): SheetSource {
+  const stock = within(params, 'nesting', 'stock');
+  const wanted = stock === 'store' || (Array.isArray(stock) && stock.length > 0);
+  if (!wanted) return 'new';
+  return within(params, 'nesting', 'only_stock') === true ? 'only' : 'stock';
 }
 
 // The way back: the draft that a job's parameters stand for. What the form has no place for is dropped.
@@ -178,6 +208,8 @@ export function draftOf(params: Params): Draft {
     pattern: named('weave', 'pattern', kPatterns, 'plain'),
     weft: typed('material', 'weft', ''),
     warp: typed('material', 'warp', ''),
+    sheets: sheetSourceOf(params),
+    machine: typed('output', 'device', ''),
     mode: named('foliation', 'mode', kModes, 'auto'),
     pants: named('foliation', 'pants', kPantsSources, 'reeb'),
     sweep: named('foliation', 'function', kSweepFunctions, 'auto'),

@@ -37,10 +37,17 @@ export interface FoliationFigures {
   readonly alternatives: readonly Alternative[];
 }
 
+export interface CylinderFigures {
+  readonly cylinder: number;
+  readonly quads: number;
+  readonly grid: readonly [number, number] | null; // Rows and columns.
+  readonly quality: readonly QualityRow[];
+}
+
 export interface ReportFigures {
   readonly foliation: FoliationFigures | null;
   readonly quality: readonly QualityRow[];
-  readonly cylinders: readonly { readonly cylinder: number; readonly quads: number; readonly quality: readonly QualityRow[] }[];
+  readonly cylinders: readonly CylinderFigures[];
   readonly facts: {
     readonly vertices: number | null;
     readonly faces: number | null;
@@ -143,17 +150,27 @@ function qualityRows(figures: unknown): readonly QualityRow[] {
     .filter((row) => row.average !== null || row.largest !== null);
 }
 
+function cylinderFigures(report: Report): readonly CylinderFigures[] {
+  const grids = listAt(report, 'foliation', 'cylinders');
+  return listAt(report, 'quality', 'cylinders').map((one, index) => {
+    const cylinder = numberAt(one, 'cylinder') ?? index;
+    const [rows, columns] = [numberAt(grids[cylinder], 'rows'), numberAt(grids[cylinder], 'cols')];
+    return {
+      cylinder,
+      quads: numberAt(one, 'quads') ?? 0,
+      grid: rows === null || columns === null ? null : [rows, columns],
+      quality: qualityRows(one),
+    };
+  });
+}
+
 export function reportFigures(report: Report): ReportFigures {
   const timings = Object.values((at(report, 'timings_s') as object | undefined) ?? {});
   const seconds = timings.filter((value): value is number => typeof value === 'number');
   return {
     foliation: foliationFigures(report),
     quality: qualityRows(at(report, 'quality', 'overall')),
-    cylinders: listAt(report, 'quality', 'cylinders').map((one, index) => ({
-      cylinder: numberAt(one, 'cylinder') ?? index,
-      quads: numberAt(one, 'quads') ?? 0,
-      quality: qualityRows(one),
-    })),
+    cylinders: cylinderFigures(report),
     facts: {
       vertices: numberAt(report, 'input', 'vertices'),
       faces: numberAt(report, 'input', 'faces'),

@@ -66,6 +66,16 @@ export async function attempt(call: () => Promise<unknown>): Promise<boolean> {
   }
 }
 
+// One that the lists did not hold. That there is none, the page says itself.
+export function fetchJob(id: string): void {
+  getJob(id).then(
+    (job) => receive({ type: 'job', seq: null, job }),
+    (fault: unknown) => {
+      if (!(fault instanceof Problem && fault.status === 404)) say('problem', problemText(fault));
+    },
+  );
+}
+
 async function askAgain({ cuts, jobs }: Doubtful): Promise<void> {
   for (const id of cuts) receive({ type: 'cut', seq: null, cut: await getCut(id) });
   for (const id of jobs) receive({ type: 'job', seq: null, job: await getJob(id) });

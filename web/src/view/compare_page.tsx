@@ -35,7 +35,7 @@ function valueOf(row: CompareRow, side: 0 | 1): string {
   if (value === null) return '–';
   if (row.name === 'time') return duration(value);
   const unit = row.name.endsWith('_deg') ? '°' : row.name.endsWith('_percent') || row.name === 'density' ? ' %' : '';
-  return `${figure(value, row.of === 'count' ? 6 : 3)}${unit}`;
+  return `${figure(value, Number.isInteger(value) ? 9 : 3)}${unit}`;
 }
 
 function Figures(props: { readonly a: Side; readonly b: Side }) {

@@ -12,10 +12,16 @@ import { AskButton, Bar } from './controls.tsx';
 import { cutWord } from './cut_words.ts';
 import { FinishForm } from './finish_form.tsx';
 
+// The machine that the job was made for, if one was named.
+function machineOf(job: Job): string {
+  const { output } = job.params;
+  return typeof output === 'object' && output !== null && 'device' in output ? String(output.device) : '';
+}
+
 function QueueForm(props: { readonly job: Job }) {
   const { job } = props;
   const devices = connectedDevices.value;
-  const [device, setDevice] = useState('');
+  const [device, setDevice] = useState(() => machineOf(job));
   const [busy, setBusy] = useState(false);
   const uncut = job.sheets.filter((sheet) => sheet.state !== 'cut').map((sheet) => sheet.id);
   const sheets = uncut.length === 0 ? job.sheets.map((sheet) => sheet.id) : uncut;

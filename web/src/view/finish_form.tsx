@@ -26,7 +26,7 @@ export function FinishForm(props: { readonly cut: Cut }) {
   const [seen, setSeen] = useState('');
   const [busy, setBusy] = useState(false);
   const mustHome = beam?.positionKept !== true;
-  const mustSay = beam === null;
+  const mustSay = beam?.certain !== true; // Where the daemon isn't sure, eyes are.
   const burnt = numberOf(seen);
   const can = inPlace && (homed || !mustHome) && (seen.trim() === '' ? !mustSay : burnt !== null && burnt >= 0);
   const finish = async (): Promise<void> => {
@@ -57,7 +57,7 @@ export function FinishForm(props: { readonly cut: Cut }) {
             {words.homed}
           </Tick>
         )}
-        {(mustSay || beam?.certain === false) && (
+        {mustSay && (
           <TextField label={words.seen} value={seen} onInput={setSeen} unit="mm" decimal bad={seen.trim() !== '' && burnt === null} />
         )}
       </div>

@@ -10,9 +10,24 @@ import { attempt, go, receive } from '../state/store.ts';
 import { Panel } from './controls.tsx';
 import { Fact } from './report_panel.tsx';
 
+// Of one way to cut into pairs of pants: "reeb-z, weights by length, evened".
+function wayName(source: string, sweep: string, rest: string): string {
+  const { pantsNames, sweepNames } = t.draft.foliation;
+  const known = <V extends string>(names: Readonly<Record<V, string>>, name: string): string => names[name as V] ?? name;
+  const parts = rest.split(', ').filter((part) => part !== '').map((part) => known(t.foliation.ways, part));
+  return [known(pantsNames, source === 'loops' ? 'user' : source), known(sweepNames, sweep), ...parts].join(', ');
+}
+
+// "torus", "pants with 5 holes", "pants reeb-z, equal weights", or two of them with a colon between.
 function layoutName(name: string): string {
+  const parts = name.split(': ');
+  if (parts.length > 1) return parts.map(layoutName).join(': ');
   const mode = modeNamed(name);
-  return mode === null ? name : t.modes[mode];
+  if (mode !== null) return t.modes[mode];
+  const [, holed, holes] = /^([a-z-]+) with (\d+) holes?$/.exec(name) ?? [];
+  if (holed !== undefined) return t.foliation.withHoles(layoutName(holed), Number(holes));
+  const [, source, sweep, rest] = /^pants ([a-z-]+)-([a-z]+)(.*)$/.exec(name) ?? [];
+  return source === undefined || sweep === undefined ? name : wayName(source, sweep, rest ?? '');
 }
 
 function percentOf(value: number): string {

@@ -2,14 +2,14 @@
 
 import { useEffect, useMemo } from 'preact/hooks';
 
-import { getJob, packageUrl, removeJob } from '../api/client.ts';
+import { packageUrl, removeJob } from '../api/client.ts';
 import type { Job } from '../api/types.ts';
 import { bytes, count, duration } from '../lib/format.ts';
 import { t } from '../messages/messages.ts';
 import { currentCut, newestFirst } from '../state/feed.ts';
 import { jobPackage, type JobPackage, loadPackage } from '../state/package_store.ts';
 import { formatRoute } from '../state/route.ts';
-import { attempt, changeDraft, feed, go, loadMaterials, receive } from '../state/store.ts';
+import { attempt, changeDraft, feed, fetchJob, go, loadMaterials, receive } from '../state/store.ts';
 import { AskButton, Chip } from './controls.tsx';
 import { CutPanel } from './cut_panel.tsx';
 import { FilesPanel } from './files_panel.tsx';
@@ -28,7 +28,7 @@ async function remove(job: Job): Promise<void> {
 
 // Opens the form with this job's own parameters in it.
 function weaveAgain(job: Job): void {
-  changeDraft({ type: 'again', job: job.id, name: job.name, params: job.params });
+  changeDraft({ type: 'again', job: job.id, name: job.name, file: job.file.name, params: job.params });
   go({ page: 'jobs' });
 }
 
@@ -190,15 +190,30 @@ function Result(props: { readonly job: Job }) {
   );
 }
 
+// Not there, or not yet.
+function NoJob(props: { readonly known: boolean }) {
+  return (
+    <div class="page job-page">
+      <a class="back" href="#/">
+        <Icon name="left" />
+        {t.job.back}
+      </a>
+      <div class="empty">
+        <h1>{props.known ? t.job.missing : t.jobs.loading}</h1>
+      </div>
+    </div>
+  );
+}
+
 export function JobPage(props: { readonly id: string }) {
   const { id } = props;
   const job = feed.value.jobs.get(id);
   const known = feed.value.known;
   useEffect(() => {
     if (job !== undefined || !known) return;
-    void attempt(async () => receive({ type: 'job', seq: null, job: await getJob(id) }));
+    fetchJob(id);
   }, [id, job === undefined, known]);
-  if (job === undefined) return <p class="page quiet empty">{known ? t.job.missing : t.jobs.loading}</p>;
+  if (job === undefined) return <NoJob known={known} />;
   const finished = isFinished(job);
   return (
     <div class="page job-page">

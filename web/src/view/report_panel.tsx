@@ -12,6 +12,7 @@ export function measure(name: QualityName, value: number | null): string {
   return `${figure(value)}${name.endsWith('_deg') ? '°' : ' %'}`;
 }
 
+const kFewCylinders = 12; // More are shown on demand.
 const kShortS = 10; // Below this, whole seconds say too little.
 
 function computedIn(seconds: number): string {
@@ -66,39 +67,65 @@ function RowName(props: { readonly name: QualityName }) {
   );
 }
 
-function CylinderTable(props: { readonly figures: ReportFigures }) {
-  const { cylinders, quality } = props.figures;
-  if (cylinders.length < 2) return null;
-  const largest = (rows: readonly QualityRow[], name: QualityName): string => {
-    const row = rows.find((one) => one.name === name);
-    return `${measure(name, row?.average ?? null)} / ${measure(name, row?.largest ?? null)}`;
-  };
+// The figures of the paper's second table, in its order: most and mean of the angle, of the distance, and the
+// mean of the area.
+const kPaper = [
+  ['angle_deviation_deg', 'largest'],
+  ['angle_deviation_deg', 'average'],
+  ['surface_distance_percent', 'largest'],
+  ['surface_distance_percent', 'average'],
+  ['area_distortion_percent', 'average'],
+] as const;
+
+function PaperRow(props: { readonly name: string; readonly quads: string; readonly quality: readonly QualityRow[]; readonly whole?: boolean }) {
+  const { name, quads, quality } = props;
   return (
-    <details class="by-cylinder">
+    <tr class={props.whole === true ? 'whole' : ''}>
+      <th scope="row">{name}</th>
+      <td>{quads}</td>
+      {kPaper.map(([figure, of]) => (
+        <td key={figure + of}>{measure(figure, quality.find((one) => one.name === figure)?.[of] ?? null)}</td>
+      ))}
+    </tr>
+  );
+}
+
+// One row for every cylinder, as the paper has one for every part of its models.
+function PaperTable(props: { readonly figures: ReportFigures }) {
+  const { cylinders, quality } = props.figures;
+  if (cylinders.length === 0) return null;
+  const words = t.report.rows;
+  return (
+    <details class="by-cylinder" open={cylinders.length <= kFewCylinders}>
       <summary>{t.report.perCylinder}</summary>
       <div class="table-box" tabIndex={0} role="group" aria-label={t.report.perCylinder}>
-        <table>
+        <table class="paper-table">
           <thead>
             <tr>
-              <th scope="col">{t.foliation.cylinders}</th>
-              <th scope="col">{t.report.quads}</th>
-              {quality.map(({ name }) => (
-                <th key={name} scope="col">
-                  {t.report.rows[name]}
-                </th>
+              <th scope="col" rowSpan={2}>{t.foliation.cylinders}</th>
+              <th scope="col" rowSpan={2}>{t.report.gridQuads}</th>
+              <th scope="colgroup" colSpan={2}>{words.angle_deviation_deg}</th>
+              <th scope="colgroup" colSpan={2}>{words.surface_distance_percent}</th>
+              <th scope="colgroup">{words.area_distortion_percent}</th>
+            </tr>
+            <tr>
+              {kPaper.map(([figure, of]) => (
+                <th key={figure + of} scope="col">{t.report[of]}</th>
               ))}
             </tr>
           </thead>
           <tbody>
-            {cylinders.map((one) => (
-              <tr key={one.cylinder}>
-                <th scope="row">{t.report.cylinder(count(one.cylinder + 1))}</th>
-                <td>{count(one.quads)}</td>
-                {quality.map(({ name }) => (
-                  <td key={name}>{largest(one.quality, name)}</td>
-                ))}
-              </tr>
+            {cylinders.map(({ cylinder, quads, grid, quality: own }) => (
+              <PaperRow
+                key={cylinder}
+                name={t.report.cylinder(count(cylinder + 1))}
+                quads={grid === null ? count(quads) : `${count(quads)} (${grid[0]}, ${grid[1]})`}
+                quality={own}
+              />
             ))}
+            {cylinders.length > 1 && (
+              <PaperRow name={t.report.overall} quads={count(cylinders.reduce((sum, one) => sum + one.quads, 0))} quality={quality} whole />
+            )}
           </tbody>
         </table>
       </div>
@@ -134,7 +161,7 @@ export function ReportPanel(props: { readonly figures: ReportFigures }) {
           </tbody>
         </table>
       )}
-      <CylinderTable figures={props.figures} />
+      <PaperTable figures={props.figures} />
       <Facts facts={facts} />
     </Panel>
   );

@@ -28,6 +28,10 @@ export const draft = {
     weft: 'Material Schuss',
     warp: 'Material Kette',
     standard: 'Standard',
+    sheets: 'Bögen',
+    sheetNames: { new: (size: string) => `Neue, ${size}`, stock: 'Erst der Bestand, dann neue', only: 'Nur was im Bestand ist' },
+    anyMachine: 'Jede Maschine',
+    bedTooSmall: (machine: string, bed: string) => `Ein neuer Bogen passt nicht auf das Bett von ${machine} (${bed} mm).`,
     foliation: {
       title: 'Wie die Fläche eingeteilt wird',
       mode: 'Einteilung',

@@ -32,6 +32,8 @@ export const fields = {
     pick: 'Wählen',
     picking: 'Auswahl läuft',
     radius: 'Radius neuer Löcher',
+    weigh: 'Auf einen Zylinder klicken oder ihn unten wählen und sagen, wievielmal so hoch er sein soll wie zuletzt.',
+    times: (factor: string) => `${factor} ×`,
     tools: {
       corners: { name: 'Eckpunkte', hint: 'Die vier Eckpunkte des Rechtecks, der Reihe nach' },
       poles: { name: 'Pole', hint: 'Die beiden Pole' },
@@ -40,7 +42,7 @@ export const fields = {
       loops: { name: 'Schleifen', hint: 'Einige Ecken um jede Schleife; die erste noch einmal schließt sie' },
       sources: { name: 'Beginn an Rändern', hint: 'Ränder mit ihrer Nummer; neben einen klicken' },
       sinks: { name: 'Ende an Rändern', hint: 'Ränder mit ihrer Nummer; neben einen klicken' },
-      weights: { name: 'Gewichte', hint: 'Höhen der Zylinder, in der Folge des Berichts' },
+      weights: { name: 'Gewichte', hint: 'Nach dem ersten Weben am Modell zu wählen' },
     },
   },
   params: {

@@ -60,6 +60,7 @@ export const result = {
     show: (what: string) => `In 3D zeigen: ${what}`,
     overall: 'Ganze Fläche',
     perCylinder: 'Nach Zylinder',
+    gridQuads: 'Vierecke (Reihen, Spalten)',
     cylinder: (number: string) => `Zylinder ${number}`,
     quads: 'Vierecke',
     average: 'Mittel',
@@ -106,5 +107,7 @@ export const result = {
     chosen: 'gewählt',
     more: (count: number) => `${count} weitere Arten, gleich zu zerlegen`,
     recompute: 'So weben',
+    withHoles: (mode: string, holes: number) => `${mode}, ${holes === 1 ? '1 Loch' : `${holes} Löcher`}`,
+    ways: { 'equal weights': 'gleiche Höhen', 'weights by length': 'Höhen nach Länge', evened: 'ausgeglichen' },
   },
 };

@@ -28,6 +28,10 @@ export const draft = {
     weft: 'Weft material',
     warp: 'Warp material',
     standard: 'Standard',
+    sheets: 'Sheets',
+    sheetNames: { new: (size: string) => `New, ${size}`, stock: 'Stock first, then new', only: 'Only what is in stock' },
+    anyMachine: 'Any machine',
+    bedTooSmall: (machine: string, bed: string) => `A new sheet does not fit the bed of ${machine} (${bed} mm).`,
     foliation: {
       title: 'How the surface is laid out',
       mode: 'Layout',

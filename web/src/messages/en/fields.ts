@@ -32,6 +32,8 @@ export const fields = {
     pick: 'Pick',
     picking: 'Picking',
     radius: 'Radius of new holes',
+    weigh: 'Click on a cylinder, or choose it below, and say how high it is to be: times as high as last time.',
+    times: (factor: string) => `${factor} ×`,
     tools: {
       corners: { name: 'Corners', hint: 'The four corners of the rectangle, in order' },
       poles: { name: 'Poles', hint: 'The two poles' },
@@ -40,7 +42,7 @@ export const fields = {
       loops: { name: 'Loops', hint: 'A few vertices around each loop; the first one again closes it' },
       sources: { name: 'Begin at boundaries', hint: 'Boundary loops by number; click beside one' },
       sinks: { name: 'End at boundaries', hint: 'Boundary loops by number; click beside one' },
-      weights: { name: 'Weights', hint: 'Heights of the cylinders, in the order of the report' },
+      weights: { name: 'Weights', hint: 'After the first weave: picked on the model' },
     },
   },
   params: {

@@ -60,6 +60,7 @@ export const result = {
     show: (what: string) => `Show in 3D: ${what}`,
     overall: 'Whole surface',
     perCylinder: 'By cylinder',
+    gridQuads: 'Quads (rows, columns)',
     cylinder: (number: string) => `Cylinder ${number}`,
     quads: 'Quads',
     average: 'Average',
@@ -106,5 +107,7 @@ export const result = {
     chosen: 'chosen',
     more: (count: number) => `${count} more ways to cut the same`,
     recompute: 'Weave like this',
+    withHoles: (mode: string, holes: number) => `${mode}, ${holes === 1 ? '1 hole' : `${holes} holes`}`,
+    ways: { 'equal weights': 'equal heights', 'weights by length': 'heights by length', evened: 'made even' },
   },
 };

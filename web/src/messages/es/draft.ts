@@ -28,6 +28,10 @@ export const draft = {
     weft: 'Material de la trama',
     warp: 'Material de la urdimbre',
     standard: 'Estándar',
+    sheets: 'Hojas',
+    sheetNames: { new: (size: string) => `Nuevas, ${size}`, stock: 'Primero existencias, luego nuevas', only: 'Solo lo que hay en existencias' },
+    anyMachine: 'Cualquier máquina',
+    bedTooSmall: (machine: string, bed: string) => `Una hoja nueva no cabe en la mesa de ${machine} (${bed} mm).`,
     foliation: {
       title: 'Cómo se reparte la superficie',
       mode: 'Reparto',

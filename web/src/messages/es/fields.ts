@@ -32,6 +32,8 @@ export const fields = {
     pick: 'Marcar',
     picking: 'Marcando',
     radius: 'Radio de nuevos agujeros',
+    weigh: 'Haga clic en un cilindro, o elíjalo abajo, y diga cuántas veces más alto que la última vez.',
+    times: (factor: string) => `${factor} ×`,
     tools: {
       corners: { name: 'Esquinas', hint: 'Las cuatro esquinas del rectángulo, en orden' },
       poles: { name: 'Polos', hint: 'Los dos polos' },
@@ -40,7 +42,7 @@ export const fields = {
       loops: { name: 'Lazos', hint: 'Unos vértices alrededor de cada lazo; el primero otra vez lo cierra' },
       sources: { name: 'Empezar en bordes', hint: 'Bordes por número; pulse junto a uno' },
       sinks: { name: 'Acabar en bordes', hint: 'Bordes por número; pulse junto a uno' },
-      weights: { name: 'Pesos', hint: 'Alturas de los cilindros, en el orden del informe' },
+      weights: { name: 'Pesos', hint: 'Tras el primer tejido, se eligen en el modelo' },
     },
   },
   params: {

@@ -60,6 +60,7 @@ export const result = {
     show: (what: string) => `Mostrar en 3D: ${what}`,
     overall: 'Superficie entera',
     perCylinder: 'Por cilindro',
+    gridQuads: 'Cuadros (filas, columnas)',
     cylinder: (number: string) => `Cilindro ${number}`,
     quads: 'Cuadros',
     average: 'Media',
@@ -106,5 +107,7 @@ export const result = {
     chosen: 'elegido',
     more: (count: number) => `${count} maneras más de cortar igual`,
     recompute: 'Tejer así',
+    withHoles: (mode: string, holes: number) => `${mode}, ${holes === 1 ? '1 agujero' : `${holes} agujeros`}`,
+    ways: { 'equal weights': 'alturas iguales', 'weights by length': 'alturas según longitud', evened: 'igualado' },
   },
 };

@@ -28,6 +28,10 @@ export const draft = {
     weft: 'Matériau de la trame',
     warp: 'Matériau de la chaîne',
     standard: 'Standard',
+    sheets: 'Feuilles',
+    sheetNames: { new: (size: string) => `Neuves, ${size}`, stock: 'Le stock d’abord, puis des neuves', only: 'Seulement le stock' },
+    anyMachine: 'N’importe quelle machine',
+    bedTooSmall: (machine: string, bed: string) => `Une feuille neuve ne tient pas sur le plateau de ${machine} (${bed} mm).`,
     foliation: {
       title: 'Comment la surface est découpée',
       mode: 'Découpage',

@@ -32,6 +32,8 @@ export const fields = {
     pick: 'Désigner',
     picking: 'En cours',
     radius: 'Rayon des nouveaux trous',
+    weigh: 'Cliquez sur un cylindre, ou choisissez-le plus bas, et dites combien de fois plus haut que la dernière fois.',
+    times: (factor: string) => `${factor} ×`,
     tools: {
       corners: { name: 'Coins', hint: 'Les quatre coins du rectangle, dans l’ordre' },
       poles: { name: 'Pôles', hint: 'Les deux pôles' },
@@ -40,7 +42,7 @@ export const fields = {
       loops: { name: 'Boucles', hint: 'Quelques sommets autour de chaque boucle ; le premier à nouveau la ferme' },
       sources: { name: 'Commencer aux bords', hint: 'Bords par numéro ; cliquez à côté' },
       sinks: { name: 'Finir aux bords', hint: 'Bords par numéro ; cliquez à côté' },
-      weights: { name: 'Poids', hint: 'Hauteurs des cylindres, dans l’ordre du rapport' },
+      weights: { name: 'Poids', hint: 'Après le premier tissage, au choix sur le modèle' },
     },
   },
   params: {

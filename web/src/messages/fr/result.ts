@@ -60,6 +60,7 @@ export const result = {
     show: (what: string) => `Montrer en 3D : ${what}`,
     overall: 'Surface entière',
     perCylinder: 'Par cylindre',
+    gridQuads: 'Quads (rangs, colonnes)',
     cylinder: (number: string) => `Cylindre ${number}`,
     quads: 'Quads',
     average: 'Moyenne',
@@ -106,5 +107,7 @@ export const result = {
     chosen: 'choisi',
     more: (count: number) => `${count} autres façons de découper pareil`,
     recompute: 'Tisser ainsi',
+    withHoles: (mode: string, holes: number) => `${mode}, ${holes === 1 ? '1 trou' : `${holes} trous`}`,
+    ways: { 'equal weights': 'hauteurs égales', 'weights by length': 'hauteurs selon la longueur', evened: 'égalisé' },
   },
 };

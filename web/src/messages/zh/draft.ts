@@ -28,6 +28,10 @@ export const draft = {
     weft: '纬向材料',
     warp: '经向材料',
     standard: '默认',
+    sheets: '板材',
+    sheetNames: { new: (size: string) => `新板材，${size}`, stock: '先用库存，再用新板材', only: '只用库存' },
+    anyMachine: '任意机器',
+    bedTooSmall: (machine: string, bed: string) => `新板材放不进${machine}的台面（${bed} mm）。`,
     foliation: {
       title: '曲面的划分方式',
       mode: '划分',

@@ -32,6 +32,8 @@ export const fields = {
     pick: '拾取',
     picking: '正在拾取',
     radius: '新孔半径',
+    weigh: '点击模型上的柱面，或在下面选择，再设定它是上次的几倍高。',
+    times: (factor: string) => `${factor} ×`,
     tools: {
       corners: { name: '角点', hint: '矩形的四个角点，按顺序' },
       poles: { name: '极点', hint: '两个极点' },
@@ -40,7 +42,7 @@ export const fields = {
       loops: { name: '环线', hint: '每条环线取几个顶点；再点第一个即闭合' },
       sources: { name: '起始边界', hint: '按编号的边界；在其旁点击' },
       sinks: { name: '终止边界', hint: '按编号的边界；在其旁点击' },
-      weights: { name: '权重', hint: '各柱面高度，按报告中的顺序' },
+      weights: { name: '权重', hint: '首次编织后可在模型上选取' },
     },
   },
   params: {

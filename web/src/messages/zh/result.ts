@@ -60,6 +60,7 @@ export const result = {
     show: (what: string) => `三维显示：${what}`,
     overall: '整个曲面',
     perCylinder: '按柱面',
+    gridQuads: '四边形（行，列）',
     cylinder: (number: string) => `柱面 ${number}`,
     quads: '四边形',
     average: '平均',
@@ -106,5 +107,7 @@ export const result = {
     chosen: '已选',
     more: (count: number) => `另有 ${count} 种同类分解`,
     recompute: '按此编织',
+    withHoles: (mode: string, holes: number) => `${mode}，${holes} 个孔`,
+    ways: { 'equal weights': '等高', 'weights by length': '高度按长度', evened: '已均匀化' },
   },
 };

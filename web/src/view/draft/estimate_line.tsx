@@ -8,14 +8,13 @@ import type { Looked } from '../../state/mesh_looks.ts';
 import { materials } from '../../state/store.ts';
 import { numberOf } from '../fields.tsx';
 
-export function EstimateLine(props: { readonly draft: Draft; readonly looks: ReadonlyMap<number, Looked> }) {
+export function EstimateLine(props: { readonly draft: Draft; readonly looks: readonly (Looked | undefined)[] }) {
   const { draft, looks } = props;
   const strip = numberOf(draft.stripWidthMm);
   const longest = draft.units === 'mm' ? null : numberOf(draft.longestSideMm);
   if (strip === null || strip <= 0 || (draft.units === 'longest' && (longest === null || longest <= 0))) return null;
   const material = (id: string) => materials.value.find((one) => one.id === id);
-  const all = draft.files.flatMap(({ key }) => {
-    const looked = looks.get(key);
+  const all = looks.flatMap((looked) => {
     if (looked?.state !== 'seen') return [];
     return [estimate(looked.look, scaleOf(looked.look, longest), strip, material(draft.weft), material(draft.warp))];
   });

@@ -30,9 +30,12 @@ export function MeshView(props: {
   readonly tools: readonly PickTool[];
   readonly tool: PickTool | null;
   readonly radiusMm: number;
+  readonly cylinders: Uint32Array | null; // Of each triangle, where their weights may be picked.
+  readonly edge: number | null; // The cylinder that was picked.
   readonly onPick: (tool: PickTool, typed: string) => void;
+  readonly onEdge: (edge: number) => void;
 }) {
-  const { name, mesh, picks, tools, tool, radiusMm, onPick } = props;
+  const { name, mesh, picks, tools, tool, radiusMm, cylinders, edge, onPick, onEdge } = props;
   const [setCanvas, state] = useScene(
     async (canvas) => (await import('../model/pick_scene.ts')).createPickScene(canvas, mesh),
     [mesh],
@@ -40,6 +43,8 @@ export function MeshView(props: {
   const scene = live(state);
   const marks = useMemo(() => marksOf(picks, tools), [picks, tools]);
   useEffect(() => scene?.mark(marks), [scene, marks]);
+  const tints = tool === 'weights' ? cylinders : null;
+  useEffect(() => scene?.tint(tints, edge), [scene, tints, edge]);
   const pressed = useRef<{ x: number; y: number } | null>(null);
   const release = (event: PointerEvent): void => {
     const from = pressed.current;
@@ -47,7 +52,9 @@ export function MeshView(props: {
     if (scene === null || tool === null || from === null) return;
     if (Math.hypot(event.clientX - from.x, event.clientY - from.y) > kClickSlack) return;
     const hit = scene.at(event.clientX, event.clientY);
-    if (hit !== null) onPick(tool, picked(tool, picks[tool], { ...hit, radiusMm }));
+    if (hit === null) return;
+    if (tool === 'weights') onEdge(cylinders?.[hit.triangle] ?? 0);
+    else onPick(tool, picked(tool, picks[tool], { ...hit, radiusMm }));
   };
   return (
     <div class="view mesh-view">

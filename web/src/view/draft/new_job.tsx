@@ -9,6 +9,7 @@ import { scaleOf } from '../../state/estimate.ts';
 import { forgetLooks, lookAtFile, type Looked, looks } from '../../state/mesh_looks.ts';
 import { attempt, changeDraft, draft, loadMaterials, materials } from '../../state/store.ts';
 import { sendDraft } from '../../state/uploads.ts';
+import { kAgainKey, lookAtJob, wovenBefore } from '../../state/woven_before.ts';
 import { ChooseFile } from '../drop.tsx';
 import { numberOf, TextField } from '../fields.tsx';
 import { Icon } from '../icons.tsx';
@@ -18,6 +19,7 @@ import { FoliationChoices } from './foliation_choices.tsx';
 import { MeshFacts } from './mesh_facts.tsx';
 import { MoreFields } from './more_fields.tsx';
 import { PresetPicker } from './preset_picker.tsx';
+import { SheetFields } from './sheet_fields.tsx';
 import { PicksPanel } from './picks_panel.tsx';
 
 const set = (values: Partial<Omit<Draft, 'files' | 'again'>>): void => changeDraft({ type: 'set', values });
@@ -136,24 +138,41 @@ function Measures(props: { readonly fault: string | null }) {
       />
       <MaterialSelect label={t.draft.weft} family="weft" />
       <MaterialSelect label={t.draft.warp} family="warp" />
+      <SheetFields draft={draft.value} onChange={set} />
     </div>
   );
 }
 
-function useLooks(files: readonly DraftFile[]): void {
+function useLooks({ files, again }: Draft): void {
   useEffect(() => {
-    forgetLooks(new Set(files.map((entry) => entry.key)));
+    forgetLooks(new Set([...files.map((entry) => entry.key), ...(again === null ? [] : [kAgainKey])]));
     for (const { key, file } of files) lookAtFile(key, file);
-  }, [files]);
+  }, [files, again === null]);
+  useEffect(() => {
+    if (again !== null) void lookAtJob(again.job, again.file);
+  }, [again?.job]);
+}
+
+// The mesh of the job that is woven again.
+function AgainRow(props: { readonly file: string; readonly looked: Looked | undefined; readonly scale: number }) {
+  const { file, looked, scale } = props;
+  return (
+    <div class="file-about again-file">
+      <span class="quiet file-name">{file}</span>
+      <MeshFacts looked={looked} scale={scale} file={file} />
+    </div>
+  );
 }
 
 export function NewJob() {
   useEffect(() => void attempt(() => loadMaterials()), []);
   const now = draft.value;
-  useLooks(now.files);
+  useLooks(now);
   const fault = draftFault(now);
-  const [only] = now.files;
-  const looked = now.files.length === 1 && only !== undefined ? looks.value.get(only.key) : undefined;
+  const keys = now.again === null ? now.files.map((entry) => entry.key) : [kAgainKey];
+  const seen = keys.map((key) => looks.value.get(key));
+  const looked = seen.length === 1 ? seen[0] : undefined;
+  const before = now.again !== null && wovenBefore.value?.job === now.again.job ? wovenBefore.value : null;
   return (
     <form
       class="panel new-job"
@@ -173,15 +192,16 @@ export function NewJob() {
           return <FileRow key={entry.key} entry={entry} looked={one} scale={scaleFor(one, now)} />;
         })}
       </ul>
+      {now.again !== null && <AgainRow file={now.again.file} looked={looked} scale={scaleFor(looked, now)} />}
       <PresetPicker />
       <PatternPicker />
       <Measures fault={fault} />
-      <EstimateLine draft={now} looks={looks.value} />
+      <EstimateLine draft={now} looks={seen} />
       <FoliationChoices draft={now} onChange={set} />
       {now.files.length <= 1 && (
         <details class="draft-more" open={looked?.state === 'seen'}>
           <summary>{t.picks.title}</summary>
-          <PicksPanel draft={now} looked={looked} onChange={set} />
+          <PicksPanel draft={now} name={now.again?.name ?? now.files[0]?.name ?? ''} looked={looked} before={before} onChange={set} />
         </details>
       )}
       <MoreFields more={now.more} onChange={(more) => set({ more })} />

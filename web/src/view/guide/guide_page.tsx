@@ -2,14 +2,14 @@
 
 import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 
-import { artifactUrl, getJob } from '../../api/client.ts';
+import { artifactUrl } from '../../api/client.ts';
 import { count } from '../../lib/format.ts';
 import { t } from '../../messages/messages.ts';
 import { type GuideAction, type GuideProgress, planSteps, readProgress, reduceGuide, type Step } from '../../state/assembly.ts';
 import { jobPackage, type JobPackage, loadPackage } from '../../state/package_store.ts';
 import { formatRoute } from '../../state/route.ts';
 import { keep, recall } from '../../state/settings.ts';
-import { attempt, feed, loadMaterials, receive } from '../../state/store.ts';
+import { feed, fetchJob, loadMaterials } from '../../state/store.ts';
 import { AskButton, Segmented } from '../controls.tsx';
 import { Icon } from '../icons.tsx';
 import { CrossingBand } from './band.tsx';
@@ -198,7 +198,7 @@ export function GuidePage(props: { readonly id: string }) {
   const job = feed.value.jobs.get(id);
   const { known } = feed.value;
   useEffect(() => {
-    if (known && job === undefined) void attempt(async () => receive({ type: 'job', seq: null, job: await getJob(id) }));
+    if (known && job === undefined) fetchJob(id);
   }, [id, known, job === undefined]);
   useEffect(() => {
     void loadPackage(id);

@@ -40,7 +40,7 @@ export function MaterialForm(props: { readonly material: Material | null; readon
         }}
       >
         <div class="measures">
-          <TextField label={t.draft.name} value={draft.name} required bad={fault === 'name'} onInput={(name) => set({ name })} />
+          <TextField label={t.draft.name} value={draft.name} required onInput={(name) => set({ name })} />
           <TextField label={words.fields.colour} type="color" value={draft.colour} onInput={(colour) => set({ colour })} />
           {measure('thickness', 'mm')}
           {measure('weight', 'g/m²')}
@@ -82,7 +82,7 @@ export function MaterialForm(props: { readonly material: Material | null; readon
           </tbody>
         </table>
         <p class="fault" role="alert">
-          {fault === null ? '' : words.fault}
+          {fault === null || fault === 'name' ? '' : words.fault}
         </p>
         <DialogButtons busy={busy} can={fault === null} label={t.save} onClose={onClose} />
       </form>

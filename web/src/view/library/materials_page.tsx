@@ -30,8 +30,8 @@ function MaterialCard(props: { readonly material: Material; readonly onEdit: () 
         <h2>{material.name}</h2>
         <p class="quiet">
           {figure(material.thicknessMm)} mm · {figure(material.weightGPerM2)} g/m²
-          {sheet !== undefined && ` · ${t.sheets.size(figure(sheet.widthMm, 5), figure(sheet.heightMm, 5))}`}
         </p>
+        {sheet !== undefined && <p class="quiet">{t.sheets.size(figure(sheet.widthMm, 5), figure(sheet.heightMm, 5))}</p>}
       </div>
       {isAdmin.value && (
         <div class="buttons">

@@ -53,8 +53,8 @@ function Bed(props: { readonly device: Device }) {
       <rect class="bed-plate" width={width} height={height} rx={8} />
       <path class="bed-grid" d={`M${width / 2} 0V${height}M0 ${height / 2}H${width}`} />
       <g class={status.powerS > 0 ? 'head hot' : 'head'} transform={`translate(${inside(x, width)} ${height - inside(y, height)})`}>
-        <path d="M-34 0h68M0 -34v68" />
-        <circle r={15} />
+        <path d="M-20 0h40M0 -20v40" />
+        <circle r={9} />
       </g>
     </svg>
   );

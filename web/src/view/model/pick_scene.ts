@@ -4,6 +4,7 @@
 import {
   BufferAttribute,
   BufferGeometry,
+  Color,
   DoubleSide,
   Mesh,
   MeshBasicMaterial,
@@ -19,6 +20,7 @@ import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 
 import type { Welded } from '../../mesh/look.ts';
+import { cylinderColour } from '../../state/heat.ts';
 import type { Palette } from './palette.ts';
 import { Stage } from './stage.ts';
 
@@ -29,8 +31,10 @@ export interface Marks {
 }
 
 export interface PickScene {
-  at(clientX: number, clientY: number): { readonly vertex: number; readonly loop: number | null } | null;
+  at(clientX: number, clientY: number): { readonly vertex: number; readonly loop: number | null; readonly triangle: number } | null;
   mark(marks: Marks): void;
+  // Colours the triangles by their cylinder, one of which may stand out; null: all alike.
+  tint(ofTriangle: Uint32Array | null, chosen: number | null): void;
   turn(dx: number, dy: number): void;
   zoom(factor: number): void;
   reset(): void;
@@ -39,6 +43,7 @@ export interface PickScene {
 }
 
 const kBallRadius = 0.014; // Of the mesh's radius.
+const kFaded = 0.72; // How far cylinders that were not picked go towards the plain surface.
 
 class PickModel {
   readonly geometry = new BufferGeometry();
@@ -101,6 +106,38 @@ class PickModel {
   }
 }
 
+// The triangles apart from each other, each in the colour of its cylinder.
+class Tinted {
+  readonly geometry: BufferGeometry;
+  readonly skin: Mesh<BufferGeometry, MeshLambertMaterial>;
+  private readonly colours: Float32Array;
+
+  constructor(whole: BufferGeometry) {
+    this.geometry = whole.toNonIndexed();
+    this.colours = new Float32Array(this.geometry.getAttribute('position').array.length);
+    this.geometry.setAttribute('color', new BufferAttribute(this.colours, 3));
+    this.skin = new Mesh(
+      this.geometry,
+      new MeshLambertMaterial({ side: DoubleSide, flatShading: true, vertexColors: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }),
+    );
+  }
+
+  paint(ofTriangle: Uint32Array, chosen: number | null, plain: Color): void {
+    ofTriangle.forEach((edge, triangle) => {
+      const colour = new Color(cylinderColour(edge));
+      if (chosen !== null && edge !== chosen) colour.lerp(plain, kFaded);
+      for (let corner = 0; corner < 3; corner += 1) colour.toArray(this.colours, 9 * triangle + 3 * corner);
+    });
+    const attribute = this.geometry.getAttribute('color');
+    attribute.needsUpdate = true;
+  }
+
+  dispose(): void {
+    this.geometry.dispose();
+    this.skin.material.dispose();
+  }
+}
+
 function lines(colourless: LineMaterial, segments: Float32Array): LineSegments2 | null {
   return segments.length === 0 ? null : new LineSegments2(new LineSegmentsGeometry().setPositions(segments), colourless);
 }
@@ -121,6 +158,7 @@ export function createPickScene(canvas: HTMLCanvasElement, mesh: Welded): PickSc
   stage.scene.add(skin);
   if (rims !== null) stage.scene.add(rims);
   let marked: (Mesh | LineSegments2)[] = [];
+  let tinted: Tinted | null = null;
   const raycaster = new Raycaster();
 
   function clear(): void {
@@ -139,7 +177,7 @@ export function createPickScene(canvas: HTMLCanvasElement, mesh: Welded): PickSc
       const hit = raycaster.intersectObject(skin)[0];
       if (hit === undefined || hit.faceIndex === null || hit.faceIndex === undefined) return null;
       const here = model.nearestOf(hit.faceIndex, hit.point);
-      return { vertex: mesh.fileVertex[here] ?? 0, loop: model.loopNear(hit.point) };
+      return { vertex: mesh.fileVertex[here] ?? 0, loop: model.loopNear(hit.point), triangle: hit.faceIndex };
     },
     mark({ vertices, paths, loops }) {
       clear();
@@ -155,6 +193,15 @@ export function createPickScene(canvas: HTMLCanvasElement, mesh: Welded): PickSc
       const chosen = lines(path, Float32Array.from([...rings, ...paths.flatMap((vertices) => model.way(vertices))]));
       if (chosen !== null) marked.push(chosen);
       if (marked.length > 0) stage.scene.add(...marked);
+      stage.draw();
+    },
+    tint(ofTriangle, chosen) {
+      skin.visible = ofTriangle === null;
+      if (ofTriangle !== null) {
+        if (tinted === null) stage.scene.add((tinted = new Tinted(model.geometry)).skin);
+        tinted.paint(ofTriangle, chosen, skin.material.color);
+      }
+      if (tinted !== null) tinted.skin.visible = ofTriangle !== null;
       stage.draw();
     },
     turn: (dx, dy) =>
@@ -173,6 +220,7 @@ export function createPickScene(canvas: HTMLCanvasElement, mesh: Welded): PickSc
     },
     dispose() {
       clear();
+      tinted?.dispose();
       model.geometry.dispose();
       rims?.geometry.dispose();
       for (const one of [skin.material, rim, path, spot, ball]) one.dispose();

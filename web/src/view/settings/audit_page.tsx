@@ -12,7 +12,7 @@ import { useCall } from '../use_call.ts';
 function Rows(props: { readonly entries: readonly AuditEntry[] }) {
   const { columns, nobody, host } = t.audit;
   return (
-    <div class="table-box" tabIndex={0} role="group" aria-label={t.audit.title}>
+    <div class="panel table-box" tabIndex={0} role="group" aria-label={t.audit.title}>
       <table class="history">
         <thead>
           <tr>
@@ -26,7 +26,7 @@ function Rows(props: { readonly entries: readonly AuditEntry[] }) {
         <tbody>
           {props.entries.map((entry) => (
             <tr key={entry.seq}>
-              <td>{dateTime(entry.at)}</td>
+              <td>{dateTime(entry.at, 'medium')}</td>
               <td>{entry.user ?? nobody}</td>
               <td class="audit-action">
                 {entry.action} {entry.note !== '' && <span class="quiet">{entry.note}</span>}
