@@ -15,6 +15,9 @@ std::string write_json(const BurntPiece& piece) {
 }
 
 void BeamLog::flush(std::ostream& out) {
+    if (flushed_ == pieces_.size()) {
+        return;
+    }
     for (; flushed_ < pieces_.size(); ++flushed_) {
         out << write_json(pieces_[flushed_]) << '\n';
     }

@@ -84,12 +84,12 @@ milliseconds SimHost::wait_for_bytes() const {
     return machine_->waits_for_questions() ? kQuestionWait : milliseconds(0);
 }
 
-// Written when the machine comes to rest, or when there is much of it.
-void SimHost::keep_log(bool came_to_rest) {
+// Written while the machine rests, or when there is much of it.
+void SimHost::keep_log() {
     constexpr std::size_t kMuch = 10000;
     BeamLog& log = machine_->beam_log();
     const bool drop = !keep_burnt_ && log.pieces().size() >= kMuch;
-    if (burn_file_.is_open() && (came_to_rest || drop)) {
+    if (burn_file_.is_open() && (machine_->at_rest() || drop)) {
         log.flush(burn_file_);
     }
     if (drop) {
@@ -110,7 +110,7 @@ void SimHost::turn(double wall_s) {
         } else if (!resting || !heard.empty()) {
             said += machine_->hurry();
         }
-        keep_log(!resting && machine_->at_rest());
+        keep_log();
     }
     link_->send(said);
     if (machine_->unplugged() && !unplugged_) {

@@ -42,7 +42,7 @@ public:
 private:
     void run(const std::stop_token& stop);
     void turn(double wall_s);
-    void keep_log(bool came_to_rest);
+    void keep_log();
     std::chrono::milliseconds wait_for_bytes() const;
 
     std::unique_ptr<SimLink> link_;  // Of the thread alone, once that runs.

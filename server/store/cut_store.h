@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "server/store/job_store.h"
 #include "server/store/records.h"
 
 namespace leafcutter::server {
@@ -37,9 +38,14 @@ class CutStore {
 public:
     virtual ~CutStore() = default;
 
-    // A waiting cut for each wish, or none at all. Throws NotCuttable.
+    // A waiting cut for each wish, or none at all; those of the earlier request if `key` was used
+    // before. Throws NotCuttable, KeyReused.
     virtual std::vector<CutRecord> add(const std::string& job,
-                                       const std::vector<CutWish>& wishes) = 0;
+                                       const std::vector<CutWish>& wishes,
+                                       const std::optional<IdempotencyKey>& key) = 0;
+    std::vector<CutRecord> add(const std::string& job, const std::vector<CutWish>& wishes) {
+        return add(job, wishes, std::nullopt);
+    }
 
     virtual std::optional<CutRecord> find(const std::string& id) const = 0;
 

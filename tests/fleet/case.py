@@ -98,4 +98,6 @@ class FleetCase(unittest.TestCase):
         """The beam burnt the programs of these jobs, each once."""
         wanted = sum(self.program_mm(job) for job in jobs)
         self.assertGreater(wanted, 0.0)
-        self.assertAlmostEqual(burnt(self.fleet.nodes[station].burns) / wanted, 1.0, delta=0.01)
+        # The machine writes its log beside answering.
+        ratio = wait(lambda: burnt(self.fleet.nodes[station].burns) / wanted, lambda ratio: ratio > 0.99, 10)
+        self.assertLess(ratio, 1.01)

@@ -20,8 +20,8 @@ VARIABLES = {"LEAFCUTTER_FLEET_KEY": "a key that is long enough", "LEAFCUTTER_DB
 
 
 def interpolated(text):
-    """As compose does it: ${NAME:?} from the environment, $$ for a dollar."""
-    return re.sub(r"\$(?:\$|\{(\w+):\?\})", lambda found: VARIABLES[found[1]] if found[1] else "$", text)
+    """As compose does it: ${NAME:?why} from the environment, $$ for a dollar."""
+    return re.sub(r"\$(?:\$|\{(\w+):\?[^}]*\})", lambda found: VARIABLES[found[1]] if found[1] else "$", text)
 
 
 class Host:

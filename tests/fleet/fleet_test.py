@@ -3,7 +3,9 @@
 The short run is for every day; LEAFCUTTER_FLEET_LONG=1 adds that of long_run.py."""
 import http.server
 import json
+import re
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -206,6 +208,40 @@ class DutiesTest(FleetCase):
         self.assertEqual(self.api.call("POST", f"/devices/{device}/commands", {"command": "frame"})[0], 202)
         for name in ("api0", "api1", "station0"):
             wait(lambda: framed(self.fleet.nodes[name]), lambda done: done == [True])
+
+
+class VersionTest(FleetCase):
+    """A fleet while it is changed over: nodes and tables of the next release are there already."""
+
+    def of_later(self, releases):
+        text = subprocess.run([sys.argv_binary, "--version"], capture_output=True, text=True, check=True).stdout
+        major, minor = re.search(r"(\d+)\.(\d+)\.", text).groups()
+        self.fleet.postgres.ask(
+            "INSERT INTO node(id, role, url, version, mode, started_ms, seen_ms) SELECT 'next', 'api', "
+            f"'http://127.0.0.1:9', '{major}.{int(minor) + releases}.0', 'active', now, now + 600000 FROM "
+            "(SELECT CAST(extract(epoch FROM clock_timestamp()) * 1000 AS bigint) AS now) AS clock")
+
+    def change_tables(self, oldest_reader):
+        self.fleet.postgres.ask("ALTER TABLE job ADD COLUMN of_the_next text; ALTER TABLE cut ADD COLUMN of_the_next "
+                                "text; CREATE TABLE next(id text); UPDATE schema_version SET version = version + 1, "
+                                f"oldest_reader = {oldest_reader}")
+
+    def test_beside_the_next_release_and_on_its_tables_all_works(self):
+        self.of_later(1)
+        self.change_tables("oldest_reader")
+        self.populate()
+        cut = self.cut(self.ready(self.submit("plate"))["id"], "station0")
+        self.cut_is(cut, "done")
+        versions = {node["id"]: node["version"] for node in self.api.call("GET", "/fleet")[1]["nodes"]}
+        self.assertNotEqual(versions["next"], versions["api0"])
+
+    def test_two_releases_apart_a_node_does_not_start(self):
+        self.of_later(2)
+        self.assertRaisesRegex(AssertionError, "only neighbouring releases", self.fleet.add, "worker0", "worker")
+
+    def test_on_tables_that_it_can_not_know_a_node_does_not_start(self):
+        self.change_tables("version + 1")
+        self.assertRaisesRegex(AssertionError, "use the newer one", self.fleet.add, "worker0", "worker")
 
 
 if __name__ == "__main__":

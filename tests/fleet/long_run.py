@@ -102,7 +102,8 @@ class LongTest(FleetCase):
         self.drive(list(acknowledged.values()))
         wait(lambda: self.newest(), lambda newest: events.seqs[-1] >= newest)
         self.account(acknowledged)
-        self.assertEqual(events.seqs, list(range(events.seqs[0], events.seqs[-1] + 1)))
+        gaps = [pair for pair in zip(events.seqs, events.seqs[1:]) if pair[1] != pair[0] + 1]
+        self.assertEqual(gaps, [])
         delays = [events.seen["job", job] - sent[name] for name, job in acknowledged.items()]
         print(f"{len(events.seqs)} events without a gap; from a job's first request to its event at the other api node: "
               f"median {1e3 * statistics.median(delays):.0f} ms, longest {max(delays):.1f} s\n"

@@ -132,6 +132,7 @@ class Node:
 
     def __init__(self, fleet, name, role, number, **options):
         self.fleet, self.name, self.role = fleet, name, role
+        fleet.nodes[name] = self  # Also if it does not start.
         self.state = fleet.folder / name
         self.options, self.skew = options, options.get("skew")
         self.process = None
@@ -243,15 +244,14 @@ class Fleet:
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def add(self, name, role, **options):
-        self.nodes[name] = Node(self, name, role, 10 + len(self.nodes), **options)
-        return self.nodes[name]
+        return Node(self, name, role, 10 + len(self.nodes), **options)
 
     def log_in(self, node):
         self.auth = log_in((node.address, node.port))
 
     def end(self):
         for node in self.nodes.values():
-            if node.process.poll() is None:
+            if node.process and node.process.poll() is None:
                 node.signal(signal.SIGCONT)
                 node.kill()
             if node.machine:

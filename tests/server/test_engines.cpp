@@ -190,6 +190,20 @@ TEST_P(EngineTest, AJobIsDoneWhenItsLastSheetIsCut) {
     EXPECT_EQ(store->jobs().find(job.id)->state, JobState::Done);
 }
 
+TEST_P(EngineTest, ARepeatedRequestMakesNoSecondCut) {
+    const JobRecord job = add_ready(2);
+    const std::vector<CutWish> wishes{{"one", {1}}, {"two", {2}}};
+    const IdempotencyKey key{"anna\nk", "hash"};
+    const auto first = store->cuts().add(job.id, wishes, key);
+    const auto again = store->cuts().add(job.id, wishes, key);
+    ASSERT_EQ(again.size(), 2U);
+    EXPECT_EQ(again.front().id, first.front().id);
+    EXPECT_EQ(again.back().id, first.back().id);
+    EXPECT_EQ(store->cuts().list(10).size(), 2U);
+    EXPECT_THROW(store->cuts().add(job.id, wishes, IdempotencyKey{key.key, "other"}), KeyReused);
+    EXPECT_EQ(store->cuts().add(job.id, wishes).size(), 2U);  // Without a key it is one more.
+}
+
 TEST_P(EngineTest, OnlyOneCutOccupiesADevice) {
     const JobRecord job = add_ready(1);
     const CutRecord first = store->cuts().add(job.id, {{"sim", {}}}).front();

@@ -16,6 +16,7 @@
 #include "server/http/json_body.h"
 #include "server/http/problem.h"
 #include "server/queue/spread.h"
+#include "server/store/blobs.h"
 
 namespace leafcutter::server {
 
@@ -248,6 +249,16 @@ std::vector<SheetRecord> wanted_sheets(const JobRecord& job, const std::vector<i
     throw NotCuttable("the job has no sheets");
 }
 
+// Apart from the keys of jobs, which have no line end.
+std::optional<IdempotencyKey> key_of(const Request& request, const json& body) {
+    const auto key = request.header("idempotency-key");
+    if (!key) {
+        return std::nullopt;
+    }
+    return IdempotencyKey{fmt::format("{}\n{}", request.caller.name, *key),
+                          sha256_of(fmt::format("{}\n{}", request.capture("id"), body.dump()))};
+}
+
 }  // namespace
 
 Response create_cut(App& app, Request& request) {
@@ -264,7 +275,7 @@ Response create_cut(App& app, Request& request) {
     const std::vector<CutWish> wishes =
         spread ? spread_sheets(wanted_sheets(job, sheets_in(body)), places_of(app, machines))
                : std::vector<CutWish>{{machines.front().record.id, sheets_in(body)}};
-    const std::vector<CutRecord> cuts = app.store().cuts.add(job.id, wishes);
+    const std::vector<CutRecord> cuts = app.store().cuts.add(job.id, wishes, key_of(request, body));
     for (const Machine& machine : machines) {
         if (machine.runner) {  // Other nodes hear of it from the database.
             machine.runner->wake();

@@ -35,12 +35,6 @@ std::optional<BeamRecord> beam_from(const std::string& text) {
 
 }  // namespace
 
-const char* const kSelectCut =
-    "SELECT cut.ordinal, cut.id, cut.job, cut.device, cut.sheets, cut.position, cut.state, "
-    "cut.version, "
-    "cut.lines_total, cut.lines_sent, cut.lines_acknowledged, cut.reason, cut.created_ms, "
-    "cut.updated_ms, cut.rest_of, cut.rest_sha256, cut.beam, cut.owner, cut.fence FROM cut ";
-
 std::string joined(const std::vector<int>& numbers) {
     return fmt::format("{}", fmt::join(numbers, ","));
 }
@@ -153,6 +147,18 @@ bool move_cut(SqlSession& session, const CutRecord& cut, CutState to, const std:
         tell_job_of(session, cut, fmt::format("cut {}", to_string(to)));
     }
     return true;
+}
+
+bool is_open_ended(SqlSession& session, const CutRecord& cut) {
+    if (!is_final(cut.state) || cut.state == CutState::Done) {
+        return false;
+    }
+    SqlStatement rest(
+        session,
+        "SELECT 1 FROM cut WHERE rest_of = ? AND NOT (state = 'aborted' AND NOT EXISTS("
+        "SELECT 1 FROM cut_intent WHERE cut_intent.cut = cut.id)) LIMIT 1");
+    rest.bind(1, cut.id);
+    return !rest.step();
 }
 
 }  // namespace leafcutter::server

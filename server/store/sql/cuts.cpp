@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include "server/store/sql/cut_rows.h"
 #include "server/store/sql/events.h"
 #include "server/store/sql/fleet.h"
+#include "server/store/sql/idempotency.h"
 #include "server/store/sql/job_rows.h"
 #include "server/store/sql/session.h"
 #include "server/store/sql/stock.h"
@@ -128,31 +130,38 @@ std::string insert_cut(SqlSession& session, const NewCut& wanted) {
     return cut.id;
 }
 
-// It ended early, and no other cut has begun, or is to begin, its rest: nothing is burnt twice.
-bool is_open_ended(SqlSession& session, const CutRecord& cut) {
-    if (!is_final(cut.state) || cut.state == CutState::Done) {
-        return false;
+// Those of them that are still there.
+std::vector<CutRecord> cuts_made_with(SqlSession& session, const IdempotencyKey& key) {
+    std::vector<CutRecord> cuts;
+    std::istringstream ids(made_with(session, key).value_or(""));
+    for (std::string id; ids >> id;) {
+        if (auto cut = find_cut(session, id)) {
+            cuts.push_back(*std::move(cut));
+        }
     }
-    SqlStatement rest(
-        session,
-        "SELECT 1 FROM cut WHERE rest_of = ? AND NOT (state = 'aborted' AND NOT EXISTS("
-        "SELECT 1 FROM cut_intent WHERE cut_intent.cut = cut.id)) LIMIT 1");
-    rest.bind(1, cut.id);
-    return !rest.step();
+    return cuts;
 }
 
 }  // namespace
 
 std::vector<CutRecord> SqlCutStore::add(const std::string& job,
-                                        const std::vector<CutWish>& wishes) {
+                                        const std::vector<CutWish>& wishes,
+                                        const std::optional<IdempotencyKey>& key) {
     std::vector<CutRecord> cuts;
     database_.write([&](SqlSession& session) {
-        cuts.clear();
+        cuts = key ? cuts_made_with(session, *key) : std::vector<CutRecord>{};
+        if (!cuts.empty()) {
+            return;
+        }
+        std::vector<std::string> ids;
         for (const CutWish& wish : wishes) {
             std::vector<int> sheets = wish.sheets;
             check_sheets(session, job, sheets);
-            const std::string id = insert_cut(session, {job, wish.device, sheets});
-            cuts.push_back(find_cut(session, id).value());
+            ids.push_back(insert_cut(session, {job, wish.device, sheets}));
+            cuts.push_back(find_cut(session, ids.back()).value());
+        }
+        if (key) {
+            remember_key(session, *key, fmt::format("{}", fmt::join(ids, " ")));
         }
     });
     return cuts;
@@ -333,74 +342,6 @@ std::int64_t SqlCutStore::count(CutState state) const {
         counted = query.step() ? query.column(0).int64() : 0;
     });
     return counted;
-}
-
-bool SqlCutStore::reclaim(const CutRecord& in_work) {
-    const auto seen = find(in_work.id);
-    if (!seen || seen->state != CutState::Interrupted) {
-        return false;
-    }
-    bool reclaimed = false;
-    database_.write([&](SqlSession& session) {
-        const auto cut = find_cut(session, in_work.id);
-        reclaimed = cut && cut->state == CutState::Interrupted && cut->owner == scope_.node &&
-                    cut->position == in_work.position && is_open_ended(session, *cut);
-        if (!reclaimed) {
-            return;
-        }
-        SqlStatement update(session,
-                            "UPDATE cut SET state = ?, reason = '', version = version + 1, "
-                            "updated_ms = ? WHERE id = ?");
-        update.bind(1, to_string(in_work.state));
-        update.bind(2, session.now_ms());
-        update.bind(3, cut->id);
-        update.run();
-        tell(session, *cut,
-             fmt::format("interrupted -> {}: its station is back and never stopped",
-                         to_string(in_work.state)));
-        tell_job_of(session, *cut, fmt::format("cut {}", to_string(in_work.state)));
-    });
-    return reclaimed;
-}
-
-std::vector<CutRecord> SqlCutStore::in_hand() const {
-    std::vector<CutRecord> cuts;
-    database_.read([&](SqlSession& session) {
-        cuts.clear();
-        SqlStatement query(
-            session, std::string(kSelectCut) + "WHERE state IN ('cutting','paused') AND owner = ?");
-        query.bind(1, scope_.node);
-        while (query.step()) {
-            cuts.push_back(cut_from(session, query));
-        }
-    });
-    return cuts;
-}
-
-std::vector<std::string> SqlCutStore::recover() {
-    std::vector<std::string> devices;
-    database_.write([&](SqlSession& session) {
-        std::vector<CutRecord> open;
-        SqlStatement query(session,
-                           std::string(kSelectCut) + "WHERE state IN ('armed','cutting','paused')");
-        while (query.step()) {
-            open.push_back(cut_from(session, query));
-        }
-        for (const CutRecord& cut : open) {
-            if (cut.state == CutState::Armed) {
-                move_cut(session, cut, cut.before_arming(), "");
-                continue;
-            }
-            devices.push_back(cut.device);
-            move_cut(
-                session, cut, CutState::Interrupted,
-                fmt::format("the daemon died while sheet {} was being cut: at least {} of {} lines "
-                            "were done; finish its rest if that is offered, or cut this sheet "
-                            "again on fresh material",
-                            cut.sheet(), cut.lines_acknowledged, cut.lines_total));
-        }
-    });
-    return devices;
 }
 
 }  // namespace leafcutter::server

@@ -14,7 +14,10 @@ public:
     SqlCutStore(SqlDatabase& database, const NodeScope& scope)
         : database_(database), scope_(scope) {}
 
-    std::vector<CutRecord> add(const std::string& job, const std::vector<CutWish>& wishes) override;
+    using CutStore::add;
+    std::vector<CutRecord> add(const std::string& job,
+                               const std::vector<CutWish>& wishes,
+                               const std::optional<IdempotencyKey>& key) override;
     std::optional<CutRecord> find(const std::string& id) const override;
     std::vector<CutRecord> list(int limit,
                                 std::optional<std::int64_t> below_ordinal) const override;

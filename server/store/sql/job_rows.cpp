@@ -11,11 +11,6 @@
 
 namespace leafcutter::server {
 
-const char* const kSelectJob =
-    "SELECT ordinal, id, name, state, version, created_ms, updated_ms, file_name, file_bytes, "
-    "file_sha256, params, attempt, error_kind, error_code, error_detail, summary, recut_of, "
-    "priority, retries, retry_cause, owner, fence, lease_until_ms, recut FROM job ";
-
 JobRecord job_from(SqlStatement& row) {
     JobRecord job;
     job.ordinal = row.column(0).int64();

@@ -15,7 +15,10 @@ class SqlSession;
 class SqlStatement;
 
 // The columns that job_from() takes, up to "FROM job ".
-extern const char* const kSelectJob;
+inline constexpr const char* kSelectJob =
+    "SELECT ordinal, id, name, state, version, created_ms, updated_ms, file_name, file_bytes, "
+    "file_sha256, params, attempt, error_kind, error_code, error_detail, summary, recut_of, "
+    "priority, retries, retry_cause, owner, fence, lease_until_ms, recut FROM job ";
 
 // Between the places of two neighbours in the queue, at first: room to put others between them.
 constexpr std::int64_t kPlaceGap = 1 << 20;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "server/store/sql/events.h"
+#include "server/store/sql/idempotency.h"
 #include "server/store/sql/job_rows.h"
 #include "server/store/sql/session.h"
 
@@ -12,43 +13,15 @@ namespace {
 
 constexpr const char* kIsDeadLetter = " AND error_code = 'poison-job' AND state = 'failed'";
 
-// The job that an earlier request with this key made, if any.
-std::optional<JobRecord> job_of_key(SqlSession& session, const IdempotencyKey& key) {
-    SqlStatement query(session, "SELECT request_hash, job FROM idempotency WHERE key = ?");
-    query.bind(1, key.key);
-    if (!query.step()) {
-        return std::nullopt;
-    }
-    if (query.column(0).text() != key.request_hash) {
-        throw KeyReused("this Idempotency-Key belongs to a different request");
-    }
-    return find_job(session, query.column(1).text());
-}
-
-void remember_key(SqlSession& session, const IdempotencyKey& key, const std::string& job) {
-    constexpr std::int64_t kKeptMs = 7LL * 24 * 3600 * 1000;
-    SqlStatement forget(session, "DELETE FROM idempotency WHERE at_ms < ?");
-    forget.bind(1, session.now_ms() - kKeptMs);
-    forget.run();
-    SqlStatement insert(session,
-                        "INSERT INTO idempotency(key, request_hash, job, at_ms) VALUES(?, ?, ?, ?) "
-                        "ON CONFLICT(key) DO UPDATE SET request_hash = excluded.request_hash, "
-                        "job = excluded.job, at_ms = excluded.at_ms");
-    insert.bind(1, key.key);
-    insert.bind(2, key.request_hash);
-    insert.bind(3, job);
-    insert.bind(4, session.now_ms());
-    insert.run();
-}
-
 }  // namespace
 
 AddedJob SqlJobStore::add(const NewJob& job, const std::optional<IdempotencyKey>& key) {
     AddedJob added;
     database_.write([&](SqlSession& session) {
         if (key) {
-            if (const auto known = job_of_key(session, *key)) {
-                added = {*known, true};
+            const auto known = made_with(session, *key);
+            if (const auto made = known ? find_job(session, *known) : std::nullopt) {
+                added = {*made, true};
                 return;
             }
         }
