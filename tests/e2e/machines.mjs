@@ -98,9 +98,9 @@ step('the console says what the controller answers', async () => {
 
 step('a value of the controller is changed', async () => {
   await card().getByText('Controller settings').click();
-  const rate = card().getByRole('textbox', { name: /^\$110 / });
+  const row = card().locator('tr', { has: desk.page.getByRole('textbox', { name: /^\$110 / }) });
+  const rate = row.getByRole('textbox');
   await rate.waitFor();
-  const row = card().locator('tr', { has: rate });
   await rate.fill('4321');
   await row.getByRole('button').click();
   const value = async () => {
