@@ -15,9 +15,9 @@ COMPILE_PACKAGES="g++ cmake ninja-build make pkg-config ccache git ca-certificat
     nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev
     libcpp-httplib-dev libssl-dev zlib1g-dev libbrotli-dev
     libsqlite3-dev libpq-dev libsqlitecpp-dev libsodium-dev libusb-1.0-0-dev libpolyclipping-dev libhpdf-dev libpng-dev"
-TEST_PACKAGES="fakeroot nginx-light openssl postgresql-15 libgtest-dev libgmock-dev libbenchmark-dev umockdev libumockdev-dev
+TEST_PACKAGES="fakeroot nginx-light openssl postgresql-15 iproute2 nftables faketime libgtest-dev libgmock-dev libbenchmark-dev umockdev libumockdev-dev
     clang clang-format clang-tidy libclang-rt-14-dev
-    python3 python3-jsonschema python3-numpy python3-scipy python3-shapely python3-ezdxf poppler-utils chromium"
+    python3 python3-jsonschema python3-yaml python3-numpy python3-scipy python3-shapely python3-ezdxf poppler-utils chromium"
 
 case "${1:-}" in
     run) wanted=$RUN_PACKAGES ;;

@@ -1,9 +1,11 @@
 #include "server/app.h"
 
 #include <algorithm>
+#include <sys/resource.h>
 #include <thread>
 #include <utility>
 
+#include <climits>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -17,8 +19,25 @@ namespace leafcutter::server {
 
 namespace {
 
+// Files are numbered from below: of those that may be open, the last ones are kept for the store,
+// the machines and computations, however many connections come.
+void share_files(EdgeOptions& options) {
+    constexpr rlim_t kKept = 32;
+    constexpr rlim_t kLeast = 16;
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur <= 2 * kKept) {
+        return;
+    }
+    const rlim_t shared = files.rlim_cur - kKept;
+    options.most_fd = static_cast<int>(std::min<rlim_t>(shared, INT_MAX));
+    options.most_streams = std::max(kLeast, (shared - kKept) / 4);
+    options.parking.connections =
+        std::min<std::size_t>(options.parking.connections, std::max(kLeast, (shared - kKept) / 2));
+}
+
 EdgeOptions edge_options(const Config& config) {
     EdgeOptions options;
+    share_files(options);
     options.address = config.listen.address;
     options.port = config.listen.port;
     options.workers = config.http_workers;
@@ -78,6 +97,7 @@ App::App(const Config& config, AppParts parts)
       burn_logs_(std::filesystem::absolute(config.state) / "burns"),
       self_{config.store.empty() ? "" : config.node, config.role, config.advertise,
             std::chrono::seconds(config.lease_s)},
+      duties_(self_.id.empty() ? std::chrono::milliseconds(0) : self_.lease),
       peers_(self_.id, config.fleet_key, self_.lease),
       hub_(event_source()),
       stop_policy_(config.stop_policy) {
@@ -109,7 +129,10 @@ App::App(const Config& config, AppParts parts)
                     [this](const std::string& device) { post("device", device); },
                     [this](const std::string& cut) { post("cut", cut); }, config.stop_policy});
     begin_webhooks(config);
-    housekeeper_ = std::make_unique<Housekeeper>(*store_);
+    if (serves(config.role)) {
+        duties_.want(kHousekeeping);
+    }
+    housekeeper_ = std::make_unique<Housekeeper>(*store_, duties_);
     if (self() != nullptr) {
         begin_fleet(config);
     }
@@ -146,7 +169,7 @@ void App::begin_webhooks(const Config& config) {
         return;  // Nothing happens that could be told, and no place in the log could be kept.
     }
     for (const WebhookConfig& webhook : config.webhooks) {
-        auto begun = std::make_unique<Webhook>(webhook, store_->events, store_->settings);
+        auto begun = std::make_unique<Webhook>(webhook, store_->events, store_->settings, duties_);
         const std::scoped_lock lock(webhooks_mutex_);
         webhooks_.push_back(std::move(begun));
     }
@@ -198,7 +221,11 @@ void App::begin_fleet(const Config& config) {
     hooks.view = [this](const std::string& type, const std::string& id) {
         return passing_view(*this, type, id);
     };
-    hooks.on_beat = [this] { accounts_->reload(); };
+    hooks.on_beat = [this] {
+        accounts_->reload();
+        duties_.renew(store_->fleet);
+        hub_.wake();  // Whatever was not announced.
+    };
     auto node = std::make_unique<FleetNode>(*store_, *compute_, *fleet_, self_, std::move(hooks));
     const std::scoped_lock lock(webhooks_mutex_);
     node_ = std::move(node);

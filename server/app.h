@@ -17,6 +17,7 @@
 #include "server/auth/audit_log.h"
 #include "server/auth/login_limit.h"
 #include "server/config.h"
+#include "server/fleet/duties.h"
 #include "server/fleet/fleet_node.h"
 #include "server/fleet/peers.h"
 #include "server/fleet/remote_views.h"
@@ -48,8 +49,8 @@ struct AppParts {
     // Throws geometry::Error for job parameters that can't be.
     std::function<void(const std::string& params_json)> check_params;
 
-    // Within seconds. Throws geometry::Error.
-    std::function<ComputeOutput(const RecutCall&)> recut;
+    // At once. Throws geometry::Error for pieces that can't be cut again.
+    std::function<void(const RecutCall&)> check_recut;
 
     // At once. Throws geometry::Error.
     std::function<ComputeOutput(const std::string& wish_json,
@@ -102,6 +103,7 @@ private:
     const AppParts parts_;
     const std::filesystem::path burn_logs_;  // Folder of simulated machines' beam logs.
     FleetSelf self_;
+    Duties duties_;
     Peers peers_;
     RemoteViews remote_;
     EventHub hub_;

@@ -183,16 +183,10 @@ std::vector<fab::Piece> picked(std::vector<fab::Piece> pieces,
     return wanted;
 }
 
-}  // namespace
-
-fab::RecutSummary recut_package(const PackageSource& source,
-                                const RecutWishes& wishes,
-                                std::span<const fab::Material> materials,
-                                const geometry::Context& context) {
-    const PackageFacts facts = read_facts(source.read("report.json"));
-    const std::string strips_json = source.read("strips.json");
-    const std::vector<std::string> ids = PieceNames(source, strips_json).resolve(wishes.pieces);
-    context.check();
+// All but the pieces themselves.
+fab::RecutInput input_for(const PackageFacts& facts,
+                          const RecutWishes& wishes,
+                          std::span<const fab::Material> materials) {
     fab::RecutInput input;
     input.input = facts.input;
     input.params = facts.params;
@@ -202,8 +196,28 @@ fab::RecutSummary recut_package(const PackageSource& source,
     input.warp = material_of(facts, facts.params.material.warp, wishes, materials);
     input.params.material = {.warp = input.warp.id, .weft = input.weft.id};
     input.params_json = with_materials_of(input.params.material, facts.params_json);
-    input.pieces = picked(read_pieces(strips_json), ids);
     input.remnant = wishes.remnant;
+    return input;
+}
+
+}  // namespace
+
+void check_recut(const PackageSource& source,
+                 const RecutWishes& wishes,
+                 std::span<const fab::Material> materials) {
+    input_for(read_facts(source.read("report.json")), wishes, materials);
+    PieceNames(source, source.read("strips.json")).resolve(wishes.pieces);
+}
+
+fab::RecutSummary recut_package(const PackageSource& source,
+                                const RecutWishes& wishes,
+                                std::span<const fab::Material> materials,
+                                const geometry::Context& context) {
+    const std::string strips_json = source.read("strips.json");
+    const std::vector<std::string> ids = PieceNames(source, strips_json).resolve(wishes.pieces);
+    context.check();
+    fab::RecutInput input = input_for(read_facts(source.read("report.json")), wishes, materials);
+    input.pieces = picked(read_pieces(strips_json), ids);
     fab::RecutSummary summary = fab::recut(input, context);
     summary.package.files.push_back(
         {"strips.json", pick_pieces(strips_json, {ids.begin(), ids.end()})});

@@ -39,4 +39,9 @@ fab::RecutSummary recut_package(const PackageSource& source,
                                 std::span<const fab::Material> materials,
                                 const geometry::Context& context);
 
+// Throws for such wishes what recut_package would, but for those that only nesting can refuse.
+void check_recut(const PackageSource& source,
+                 const RecutWishes& wishes,
+                 std::span<const fab::Material> materials);
+
 }  // namespace leafcutter::server

@@ -16,6 +16,18 @@ Eigen::Vector2f point(double x, double y) {
 
 }  // namespace
 
+bool is_banded(const BoardPlan& plan) {
+    std::size_t bands = 0;
+    for (const std::size_t part : plan.part_of) {
+        const NestPart& p = plan.parts[part];
+        if (!p.turns_freely()) {
+            return false;
+        }
+        bands += p.is_band() ? 1 : 0;
+    }
+    return 2 * bands > plan.part_of.size();
+}
+
 Board::Board(const BoardPlan& plan)
     : plan_(plan),
       at_(plan.part_of.size()),

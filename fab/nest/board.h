@@ -46,6 +46,9 @@ struct BoardPlan {
     }
 };
 
+// Whether all parts turn freely and most are long bands: those stack well in heaps and are pressed.
+bool is_banded(const BoardPlan& plan);
+
 // The first `bins` sheets, the last one only up to `last_width`.
 struct Extent {
     int bins = 1;
@@ -77,6 +80,9 @@ public:
     // Everything at once; forgets weights.
     void restore(const std::vector<Position>& positions, const Extent& extent);
     void move(std::size_t item, const Position& to);
+
+    // Moves the last sheet's right edge.
+    void set_last_width(double width) { extent_.last_width = width; }
 
     // `part` of the item at a rotation: from the plan or turned into `scratch`.
     const TurnedPart& turned(std::size_t item, const Position& position, TurnedPart& scratch) const;

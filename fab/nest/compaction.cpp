@@ -8,14 +8,18 @@
 #include <thread>
 
 #include "fab/nest/explorer.h"
+#include "fab/nest/search.h"
+#include "fab/nest/shake_and_press.h"
 #include "geometry/error.h"
 
 namespace leafcutter::fab {
 
 namespace {
 
-constexpr std::int64_t kEpoch = 20'000;  // Evaluations of each search between two exchanges.
-constexpr double kSharedFrom = 0.5;      // From then on all go on from the best of all.
+// Evaluations of each search between two exchanges. Presses take many at once.
+constexpr std::int64_t kEpoch = 20'000;
+constexpr std::int64_t kPressedEpoch = 200'000;
+constexpr double kSharedFrom = 0.5;  // From then on all go on from the best of all.
 
 // The narrowest box any part can have.
 double narrowest(const BoardPlan& plan) {
@@ -31,8 +35,23 @@ double narrowest(const BoardPlan& plan) {
     return least;
 }
 
+// Presses pay where bands lie side by side, and where the board is not too large for them.
+bool is_for_presses(const BoardPlan& plan) {
+    constexpr std::size_t kMostPressed = 400;
+    return plan.part_of.size() <= kMostPressed && is_banded(plan);
+}
+
+std::unique_ptr<Search> make_search(const BoardPlan& plan,
+                                    const Packing& start,
+                                    std::uint64_t seed) {
+    if (is_for_presses(plan)) {
+        return std::make_unique<ShakeAndPress>(plan, start, seed);
+    }
+    return std::make_unique<Explorer>(plan, start, seed);
+}
+
 // Runs all searches for an epoch, on as many threads as allowed.
-void run_epoch(std::vector<std::unique_ptr<Explorer>>& searches,
+void run_epoch(std::vector<std::unique_ptr<Search>>& searches,
                std::int64_t evaluations,
                double progress,
                const geometry::Context& context) {
@@ -62,8 +81,8 @@ void run_epoch(std::vector<std::unique_ptr<Explorer>>& searches,
 }
 
 // The one that found the smallest packing below `area`, if any.
-const Explorer* ahead_of(const std::vector<std::unique_ptr<Explorer>>& searches, double area) {
-    const Explorer* ahead = nullptr;
+const Search* ahead_of(const std::vector<std::unique_ptr<Search>>& searches, double area) {
+    const Search* ahead = nullptr;
     for (const auto& search : searches) {
         if (search->best_area() < area) {
             ahead = search.get();
@@ -182,13 +201,14 @@ Packing compact(const BoardPlan& plan,
                 const CompactionOptions& options,
                 const geometry::Context& context,
                 const std::function<bool(const Packing&)>& accept) {
-    std::vector<std::unique_ptr<Explorer>> searches;
+    std::vector<std::unique_ptr<Search>> searches;
     for (std::size_t i = 0; i < options.searches; ++i) {
-        searches.push_back(std::make_unique<Explorer>(plan, start, options.seed * 7919 + i));
+        searches.push_back(make_search(plan, start, options.seed * 7919 + i));
     }
     Packing best = std::move(start);
     double best_area = area_taken(plan, best.extent);
     const double begun_s = context.now_s();
+    const std::int64_t epoch = is_for_presses(plan) ? kPressedEpoch : kEpoch;
     std::int64_t spent = 0;
     std::int64_t idle_epochs = 0;
     for (;;) {
@@ -204,7 +224,7 @@ Packing compact(const BoardPlan& plan,
             context.report("nest", progress);
             const std::int64_t left =
                 (options.max_evaluations - spent) / static_cast<std::int64_t>(options.searches) + 1;
-            run_epoch(searches, std::min(kEpoch, left), progress, context);
+            run_epoch(searches, std::min(epoch, left), progress, context);
         } catch (const geometry::Cancelled&) {
             return best;
         }
@@ -212,7 +232,7 @@ Packing compact(const BoardPlan& plan,
         for (const auto& search : searches) {
             done += search->evaluations();
         }
-        const Explorer* ahead = ahead_of(searches, best_area);
+        const Search* ahead = ahead_of(searches, best_area);
         idle_epochs = done == spent ? idle_epochs + 1 : 0;
         spent = done;
         best.evaluations = spent;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace leafcutter::fab {
 
@@ -17,49 +16,6 @@ constexpr double kLongAttempt = 0.015;
 constexpr double kLongestAttempt = 0.1;
 constexpr std::int64_t kLongPerItem = 5000;  // Evaluations.
 
-// Items by hull, largest first, until they make up three quarters of the sum.
-std::vector<std::size_t> large_items(const BoardPlan& plan) {
-    std::vector<std::size_t> order(plan.part_of.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return plan.part(a).hull_area > plan.part(b).hull_area;
-    });
-    double whole = 0.0;
-    for (const std::size_t item : order) {
-        whole += plan.part(item).hull_area;
-    }
-    double sum = 0.0;
-    std::size_t count = 0;
-    while (count < order.size() && sum < 0.75 * whole) {
-        sum += plan.part(order[count++]).hull_area;
-    }
-    order.resize(count);
-    return order;
-}
-
-bool alike(const NestPart& a, const NestPart& b) {
-    return std::abs(a.area - b.area) <= 0.01 * std::max(a.area, b.area) &&
-           std::abs(a.diameter - b.diameter) <= 0.01 * std::max(a.diameter, b.diameter);
-}
-
-// Gives `position` the rotation of another part, or the nearest that it may have.
-void turn_like(const NestPart& part, double angle_deg, Position& position) {
-    if (part.turns_freely()) {
-        position.turn = 0;
-        position.angle_deg = part.allowed_deg.nearest(angle_deg);
-        return;
-    }
-    double least = 1e9;
-    for (std::size_t i = 0; i < part.allowed_deg.size(); ++i) {
-        const double off = std::abs(std::remainder(part.allowed_deg[i] - angle_deg, 360.0));
-        if (off < least) {
-            least = off;
-            position.turn = static_cast<int>(i);
-            position.angle_deg = part.allowed_deg[i];
-        }
-    }
-}
-
 }  // namespace
 
 Explorer::Explorer(const BoardPlan& plan, const Packing& start, std::uint64_t seed)
@@ -68,7 +24,7 @@ Explorer::Explorer(const BoardPlan& plan, const Packing& start, std::uint64_t se
       board_(plan),
       separation_(board_, random_),
       search_(board_, random_),
-      large_(large_items(plan)),
+      swap_(plan),
       start_(start),
       best_(start),
       best_area_(area_taken(plan, start.extent)) {
@@ -139,7 +95,7 @@ void Explorer::begin_exploring() {
     const double pick = std::min(0.25 * std::abs(random_.normal()), 0.999);
     const auto index = static_cast<std::size_t>(pick * static_cast<double>(failed_.size()));
     std::vector<Position> positions = failed_[index].positions;
-    disrupt(positions);
+    swap_.apply(positions, random_);
     attempt(std::move(positions), target_, target_, middle);
 }
 
@@ -215,45 +171,6 @@ void Explorer::restart() {
     best_area_ = area_taken(plan_, start_.extent);
     shrink_ = kFirstShrink;
     failed_.clear();
-}
-
-// Swaps two large parts; small ones that lie within where one goes are carried to where it was.
-void Explorer::disrupt(std::vector<Position>& positions) {
-    const std::size_t first = large_[random_.below(large_.size())];
-    std::size_t second = random_.below(positions.size());
-    for (int tries = 0; tries < 20; ++tries) {
-        const std::size_t other = large_[random_.below(large_.size())];
-        if (other != first && !alike(plan_.part(first), plan_.part(other))) {
-            second = other;
-            break;
-        }
-    }
-    if (second == first) {
-        return;
-    }
-    const Position there = positions[second];
-    const Position here = positions[first];
-    positions[first] = there;
-    positions[second] = here;
-    turn_like(plan_.part(first), there.angle_deg, positions[first]);
-    turn_like(plan_.part(second), here.angle_deg, positions[second]);
-    const auto carry = [&](const Position& from, const Position& to, double reach) {
-        for (std::size_t item = 0; item < positions.size(); ++item) {
-            Position& at = positions[item];
-            const bool small = item != first && item != second && plan_.part(item).diameter < reach;
-            if (small && at.bin == from.bin &&
-                std::hypot(at.x - from.x, at.y - from.y) < 0.25 * reach) {
-                at.bin = to.bin;
-                at.x += to.x - from.x;
-                at.y += to.y - from.y;
-            }
-        }
-    };
-    if (plan_.part(first).diameter > 1.5 * plan_.part(second).diameter) {
-        carry(there, here, plan_.part(first).diameter);
-    } else if (plan_.part(second).diameter > 1.5 * plan_.part(first).diameter) {
-        carry(here, there, plan_.part(second).diameter);
-    }
 }
 
 }  // namespace leafcutter::fab

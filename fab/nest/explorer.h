@@ -1,4 +1,5 @@
-// One of the searches of a compaction.
+// A search that squeezes the sheets a little and then separates what overlaps, again and again
+// (sections 5 and 6 of the paper named in part.h).
 
 #pragma once
 
@@ -8,25 +9,24 @@
 
 #include "fab/nest/board.h"
 #include "fab/nest/compaction.h"
+#include "fab/nest/large_swap.h"
 #include "fab/nest/random.h"
+#include "fab/nest/search.h"
 #include "fab/nest/separation.h"
 
 namespace leafcutter::fab {
 
-class Explorer {
+class Explorer : public Search {
 public:
     Explorer(const BoardPlan& plan, const Packing& start, std::uint64_t seed);
 
-    // Works for about that many evaluations. `progress` in [0, 1]: of the whole search; the last
-    // fifth compresses. Throws Cancelled after a stop request.
-    void advance(std::int64_t evaluations, double progress, const std::stop_token& stop);
+    // The last fifth of the search compresses.
+    void advance(std::int64_t evaluations, double progress, const std::stop_token& stop) override;
 
-    const Packing& best() const { return best_; }
-    double best_area() const { return best_area_; }
-    std::int64_t evaluations() const { return board_.evaluations(); }
-
-    // Takes over what another search found. Better than its own, or else its own was refused.
-    void adopt(const Packing& better);
+    const Packing& best() const override { return best_; }
+    double best_area() const override { return best_area_; }
+    std::int64_t evaluations() const override { return board_.evaluations(); }
+    void adopt(const Packing& better) override;
 
 private:
     struct Failed {
@@ -46,7 +46,6 @@ private:
     void succeed();
     void fail();
     void restart();
-    void disrupt(std::vector<Position>& positions);
     void rehome(const std::vector<std::size_t>& homeless);
 
     const BoardPlan& plan_;
@@ -54,7 +53,7 @@ private:
     Board board_;
     Separation separation_;
     PoseSearch search_;
-    std::vector<std::size_t> large_;  // Items that make up three quarters of all hulls.
+    LargeSwap swap_;
     Packing start_;
     Packing best_;  // Since the last restart.
     double best_area_ = 0.0;

@@ -108,19 +108,6 @@ void leave_out_unplaced(Problem& problem, Packing& packing, InstanceSolution& so
     problem.plan.part_of.resize(kept);
 }
 
-// Whether all parts turn freely and most are long bands: those stack well in heaps.
-bool is_banded(const BoardPlan& plan) {
-    std::size_t bands = 0;
-    for (const std::size_t part : plan.part_of) {
-        const NestPart& p = plan.parts[part];
-        if (!p.turns_freely()) {
-            return false;
-        }
-        bands += p.is_band() ? 1 : 0;
-    }
-    return 2 * bands > plan.part_of.size();
-}
-
 // Whether each part fits between the edges of an endless strip.
 bool all_fit(const BoardPlan& plan) {
     const BoardPlan::Room& room = plan.rooms.front();

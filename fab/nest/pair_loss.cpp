@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "fab/nest/lanes.h"
+
 namespace leafcutter::fab {
 
 namespace {
@@ -18,19 +20,6 @@ constexpr std::size_t kLanes = TurnedPart::kLanes;
 // Of bands: the width of the smooth tail, and the price of crossing, in widths.
 constexpr float kBandTail = 0.1F;
 constexpr float kCrossing = 0.5F;
-
-#if defined(__GNUC__)
-#define LEAFCUTTER_INLINE inline __attribute__((always_inline))
-#else
-#define LEAFCUTTER_INLINE inline
-#endif
-
-// A loop over lanes that is unrolled before the vectoriser sees it stays scalar.
-#if defined(__GNUC__) && !defined(__clang__)
-#define LEAFCUTTER_LANES _Pragma("GCC unroll 1")
-#else
-#define LEAFCUTTER_LANES
-#endif
 
 LEAFCUTTER_INLINE bool any(const std::array<std::int32_t, kLanes>& lanes) {
     std::int32_t hit = 0;

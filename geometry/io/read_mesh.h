@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "geometry/types.h"
@@ -27,6 +28,13 @@ struct ReadLimits {
 PolygonSoup read_mesh(std::span<const std::byte> bytes,
                       std::string_view file_name,
                       const ReadLimits& limits = {});
+
+// Whether read_mesh knows the ending of that name.
+bool is_mesh_name(std::string_view file_name);
+
+// A name for read_mesh: `name` itself if it has an ending of ours, else with the one that the first
+// bytes of the mesh tell; `name` if they tell none.
+std::string mesh_file_name(std::string_view name, std::span<const std::byte> bytes);
 
 // The single formats; `read_mesh` chooses among them.
 PolygonSoup read_stl(std::span<const std::byte> bytes, const ReadLimits& limits);

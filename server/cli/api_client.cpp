@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -139,6 +141,54 @@ json ApiClient::post(const std::string& path, const json& body, const std::strin
     const httplib::Headers headers{{"Idempotency-Key", key}};
     return answer_of(client_->Post(kRoot + path, headers, text_of(body), "application/json"),
                      options_.url);
+}
+
+json ApiClient::put(const std::string& path, const json& body) {
+    return answer_of(client_->Put(kRoot + path, text_of(body), "application/json"), options_.url);
+}
+
+void ApiClient::save(const std::string& path,
+                     const std::string& file,
+                     const std::function<void(double)>& progress) {
+    const std::string partial = file + ".part";
+    std::ofstream out(partial, std::ios::binary);
+    if (!out) {
+        throw UsageError(fmt::format("{}: cannot be written", partial));
+    }
+    std::string refusal;
+    int status = 0;
+    const InterruptWatch interrupt;
+    httplib::Result result = client_->Get(
+        kRoot + path,
+        [&status](const httplib::Response& response) {
+            status = response.status;
+            return true;
+        },
+        [&](const char* bytes, std::size_t size) {
+            status == 200 ? static_cast<void>(out.write(bytes, static_cast<std::streamsize>(size)))
+                          : static_cast<void>(refusal.append(bytes, size));
+            return out.good() && !interrupt.token().stop_requested();
+        },
+        [&progress](std::uint64_t done, std::uint64_t all) {
+            progress(all == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(all));
+            return true;
+        });
+    out.close();
+    if (result && status == 200 && out.good()) {
+        std::filesystem::rename(partial, file);
+        return;
+    }
+    std::filesystem::remove(partial);
+    if (interrupt.token().stop_requested()) {
+        throw geometry::Cancelled();
+    }
+    if (!out.good()) {
+        throw std::runtime_error(fmt::format("{}: cannot be written", partial));
+    }
+    if (result) {
+        result->body = refusal;
+    }
+    answer_of(result, options_.url);
 }
 
 json ApiClient::patch(const std::string& path, const json& body) {

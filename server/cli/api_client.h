@@ -47,8 +47,14 @@ public:
     nlohmann::json post(const std::string& path,
                         const nlohmann::json& body,
                         const std::string& idempotency_key);
+    nlohmann::json put(const std::string& path, const nlohmann::json& body);
     nlohmann::json patch(const std::string& path, const nlohmann::json& body);
     nlohmann::json remove(const std::string& path);
+
+    // As it is, whatever its kind; `progress` is told how much of it has come, from 0 to 1.
+    void save(const std::string& path,
+              const std::string& file,
+              const std::function<void(double)>& progress);
     void put_bytes(const std::string& path, const char* bytes, std::size_t size);
 
     // Live events until `take` says false; reconnects where the stream breaks off. Throws

@@ -8,9 +8,18 @@
 
 #include "server/cli/command.h"
 #include "server/queue/compute_child.h"
+#include "server/recut_compute.h"
 #include "server/weave_compute.h"
 
 namespace leafcutter::server {
+
+namespace {
+
+ComputeOutput compute_job(const ComputeInput& input, const geometry::Context& context) {
+    return input.recut_json.empty() ? weave_job(input, context) : recut_job_pieces(input, context);
+}
+
+}  // namespace
 
 void add_compute_command(CLI::App& app, const CommonOptions&) {
     CLI::App* command = app.add_subcommand("compute-job", "One computation, for the daemon");
@@ -23,7 +32,7 @@ void add_compute_command(CLI::App& app, const CommonOptions&) {
         ::dup2(STDERR_FILENO, STDOUT_FILENO);
         ComputeBudget budget;
         budget.memory_bytes = *memory_mb << 20U;
-        const int status = serve_parent(STDIN_FILENO, out, budget, weave_job);
+        const int status = serve_parent(STDIN_FILENO, out, budget, compute_job);
         ::_exit(status);  // Nothing is worth the time of taking a million objects apart.
     });
 }

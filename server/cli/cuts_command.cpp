@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct CutsOptions {
     std::vector<std::string> devices;
     std::vector<int> sheets;
     bool bed_clear = false;
+    bool material_in_place = false;
+    bool homed = false;
+    std::optional<double> burnt_mm;
     bool wait = false;
 };
 
@@ -73,6 +77,18 @@ json started(ApiClient& client, const CutsOptions& options) {
                        {{"program_sha256", cut.at("program_sha256")}, {"bed_clear", true}});
 }
 
+// The rest of a cut that ended early, as a cut of its own.
+json finished(ApiClient& client, const CutsOptions& options) {
+    if (!options.material_in_place) {
+        throw UsageError("--material-in-place: say it after a look: the sheet lies as it lay");
+    }
+    json body = {{"material_in_place", true}, {"homed", options.homed}};
+    if (options.burnt_mm) {
+        body["burnt_mm"] = *options.burnt_mm;
+    }
+    return client.post(fmt::format("/cuts/{}/finish", options.id), body);
+}
+
 using Options = std::shared_ptr<CutsOptions>;
 
 template <typename Act>
@@ -105,6 +121,14 @@ void add_verbs(CLI::App& cuts, const Options& options, const CommonOptions& comm
                  });
     start->add_flag("--bed-clear", options->bed_clear, "You looked: only the sheet is on the bed");
     start->add_flag("--wait", options->wait, "Follow it until the sheet is cut");
+    CLI::App* finish = add_verb(
+        cuts, options, common, {"finish", "A new cut of what an interrupted one left of its sheet"},
+        [options](ApiClient& client) { return finished(client, *options); });
+    finish->add_flag("--material-in-place", options->material_in_place,
+                     "You looked: the sheet lies as it lay");
+    finish->add_flag("--homed", options->homed, "The machine lost its position and was homed");
+    finish->add_option("--burnt-mm", options->burnt_mm,
+                       "What is burnt, where the journal can't be sure");
     for (const char* word : {"pause", "resume", "abort"}) {
         add_verb(cuts, options, common, {word, "Tell the machine that cuts it"},
                  [options, word](ApiClient& client) {

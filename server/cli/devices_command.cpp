@@ -11,6 +11,7 @@
 #include "drivers/port_discovery.h"
 #include "server/cli/api_client.h"
 #include "server/cli/command.h"
+#include "server/cli/machine_verbs.h"
 
 namespace leafcutter::server {
 
@@ -50,30 +51,24 @@ void print_text(const std::vector<drivers::FoundPort>& ports) {
     }
 }
 
-void print_machines(const nlohmann::json& answer, const CommonOptions& common) {
-    if (common.json) {
-        print_json(answer);
-        return;
-    }
-    for (const nlohmann::json& device : answer.at("devices")) {
-        const nlohmann::json& cut = device.at("cut");
-        std::printf("%-16s %-14s %-28s %s\n", device.at("id").get<std::string>().c_str(),
-                    device.at("status").at("state").get<std::string>().c_str(),
-                    cut.is_string() ? cut.get<std::string>().c_str() : "-",
-                    device.at("uri").get<std::string>().c_str());
-    }
-}
-
 }  // namespace
 
 void add_devices_command(CLI::App& app, const CommonOptions& common) {
     CLI::App* command =
-        app.add_subcommand("devices", "Serial ports and USB engravers found on this host");
+        app.add_subcommand("devices",
+                           "Serial ports and USB engravers found on this host; the daemon's "
+                           "machines");
     const auto api = std::make_shared<ApiOptions>();  // Shared with the callback.
     const auto of_daemon = std::make_shared<bool>(false);
     add_api_options(*command, *api);
     command->add_flag("--daemon", *of_daemon, "The daemon's machines and their state instead");
-    command->callback([&common, api, of_daemon] {
+    command->fallthrough();
+    command->require_subcommand(0, 1);
+    add_machine_verbs(*command, api, common);
+    command->callback([command, &common, api, of_daemon] {
+        if (!command->get_subcommands().empty()) {
+            return;
+        }
         if (*of_daemon) {
             print_machines(ApiClient(*api).get("/devices"), common);
             return;

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -10,6 +12,8 @@
 #include "server/cli/api_client.h"
 #include "server/cli/command.h"
 #include "server/cli/follow.h"
+#include "server/cli/param_options.h"
+#include "server/cli/progress_line.h"
 
 namespace leafcutter::server {
 
@@ -21,7 +25,11 @@ struct JobsOptions {
     ApiOptions api;
     std::string job;
     std::string state;
-    std::string text;  // A cause or a reason.
+    std::string text;  // A cause, a reason, or a file.
+    std::vector<std::string> pieces;
+    std::string params_file;
+    std::vector<std::string> assignments;
+    bool wait = false;
     int number = 0;
     int limit = 50;
     bool dead_letters = false;
@@ -132,6 +140,50 @@ void add_job_verbs(CLI::App& jobs, const Options& options, const CommonOptions& 
         ->required();
 }
 
+// A new job made of one that is there.
+template <typename Body>
+CLI::App* add_maker(CLI::App& jobs,
+                    const Options& options,
+                    const CommonOptions& common,
+                    std::pair<const char*, const char*> words,
+                    Body body) {
+    const std::string call = fmt::format("/{}", words.first);
+    CLI::App* verb = add_verb(
+        jobs, options, common, words,
+        [options, &common, call, body](ApiClient& client, const std::string& path) {
+            const json made = client.post(path + call, body());
+            return options->wait ? follow_job(client, made.at("id").get<std::string>(), common)
+                                 : made;
+        });
+    verb->add_flag("--wait", options->wait, "Until it is computed");
+    return verb;
+}
+
+void add_makers(CLI::App& jobs, const Options& options, const CommonOptions& common) {
+    add_maker(jobs, options, common, {"recut", "Single pieces of one again, as a new job"},
+              [options] {
+                  return json{{"pieces", options->pieces}};
+              })
+        ->add_option("pieces", options->pieces, "W12.1, a whole strip W12, sheet:3, or all")
+        ->required();
+    CLI::App* recompute = add_maker(
+        jobs, options, common, {"recompute", "The same mesh again, as a new job"}, [options] {
+            return json{{"params", wanted_params(options->params_file, options->assignments)}};
+        });
+    recompute->add_option("--params", options->params_file, "Job parameters, a JSON file");
+    recompute->add_option("--set", options->assignments, "One parameter: grid.strip_width_mm=6");
+    CLI::App* download = add_verb(
+        jobs, options, common, {"download", "Save one's package"},
+        [options, &common](ApiClient& client, const std::string& path) {
+            const std::string file = options->text.empty() ? options->job + ".zip" : options->text;
+            ProgressLine line(common);
+            client.save(path + "/package.zip", file,
+                        [&line](double fraction) { line.show("download", fraction); });
+            return json{{"file", file}};
+        });
+    download->add_option("-o,--output", options->text, "JOB.zip if not given");
+}
+
 void add_queue_verbs(CLI::App& jobs, const Options& options, const CommonOptions& common) {
     CLI::App* queue = jobs.add_subcommand("queue", "Who is next");
     queue->callback([options, &common] { show_queue(*options, common); });
@@ -166,6 +218,7 @@ void add_jobs_command(CLI::App& app, const CommonOptions& common) {
     jobs->add_option("--limit", options->limit, "At most so many")->capture_default_str();
     jobs->add_flag("--dead-letters", options->dead_letters, "Only those that gave up");
     add_job_verbs(*jobs, options, common);
+    add_makers(*jobs, options, common);
     add_queue_verbs(*jobs, options, common);
     CLI::App* show_one = jobs->add_subcommand("show", "One of them");
     show_one->add_option("job", options->job, "A job's id")->required();

@@ -5,9 +5,11 @@
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <sys/resource.h>
 #include <unistd.h>
 #include <utility>
 
@@ -49,6 +51,10 @@ Config wanted_config(const ServeOptions& options) {
         }
         if (!options.store.empty()) {
             config.store = options.store;
+        }
+        // A secret: no argument, which everybody on the host could read.
+        if (const char* key = std::getenv("LEAFCUTTER_FLEET_KEY"); key != nullptr) {
+            config.fleet_key = key;
         }
         if (!options.node.empty()) {
             config.node = options.node;
@@ -93,8 +99,18 @@ ComputeBudget budget_of(const Config& config) {
     return budget;
 }
 
+// As many files as the host allows: live events alone may be a thousand.
+void open_all_files() {
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) == 0) {
+        files.rlim_cur = files.rlim_max;
+        ::setrlimit(RLIMIT_NOFILE, &files);
+    }
+}
+
 void serve(const ServeOptions& options) {
     std::signal(SIGPIPE, SIG_IGN);
+    open_all_files();
     const InterruptWatch interrupt;
     const Config config = wanted_config(options);
     begin_log(config.log_format);
@@ -102,7 +118,7 @@ void serve(const ServeOptions& options) {
     parts.compute = compute_in_child(budget_of(config));
     parts.open_device = [](std::string_view uri) { return drivers::open_device(uri); };
     parts.check_params = check_job_params;
-    parts.recut = recut_job_pieces;
+    parts.check_recut = check_job_recut;
     parts.test_card = make_test_card;
     const std::unique_ptr<App> app = started(config, std::move(parts));
     const bool v6 = config.listen.address.find(':') != std::string::npos;
@@ -125,9 +141,10 @@ void add_serve_command(CLI::App& app, const CommonOptions&) {
     command->add_option("--config", options->config, "TOML file")->check(CLI::ExistingFile);
     command->add_option("--listen", options->listen, "ADDRESS:PORT; 127.0.0.1:8080 if not given");
     command->add_option("--state", options->state, "Folder of the database and the files");
-    command->add_option(
-        "--store", options->store,
-        "postgresql://… that a fleet shares; SQLite in the state folder if not given");
+    command
+        ->add_option("--store", options->store,
+                     "postgresql://… that a fleet shares; SQLite in the state folder if not given")
+        ->envname("LEAFCUTTER_STORE");
     command->add_option("--role", options->role, "What this node does in a fleet")
         ->check(CLI::IsMember({"all", "api", "worker", "station"}));
     command->add_option("--node", options->node, "Its name in a fleet; the host's if not given");

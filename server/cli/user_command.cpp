@@ -157,7 +157,8 @@ void add_user_command(CLI::App& app, const CommonOptions&) {
     command->require_subcommand(1);
     const auto options = std::make_shared<UserOptions>();  // Shared with the callbacks.
     command->add_option("--state", options->state, "Folder of the database and the files");
-    command->add_option("--store", options->store, "postgresql://… of a fleet, in its place");
+    command->add_option("--store", options->store, "postgresql://… of a fleet, in its place")
+        ->envname("LEAFCUTTER_STORE");
     const auto add = [&](const char* verb, const char* help, void (*act)(const UserOptions&)) {
         CLI::App* sub = command->add_subcommand(verb, help);
         sub->callback([options, act] { act(*options); });

@@ -97,9 +97,11 @@ void FleetNode::beat() {
     const NodeMode mode = store_.fleet.beat(record());
     database_ms_ =
         std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - asked).count();
-    if (!reachable_since_) {
+    // A database, or a process, that stood still for a while is no contact either.
+    if (!reachable_since_ || Clock::now() - last_contact_ > self_.lease / 2) {
         reachable_since_ = Clock::now();
     }
+    last_contact_ = Clock::now();
     keep_jobs();
     mode_ = mode;
     if (cuts(self_.role)) {
@@ -194,6 +196,7 @@ void FleetNode::reap_if_sure() {
     }
 }
 
+// Machines before their cuts: what may be done with these depends on those.
 void FleetNode::tell_others() {
     std::set<std::pair<std::string, std::string>> passing;
     {
@@ -202,8 +205,9 @@ void FleetNode::tell_others() {
     }
     for (const auto& [type, id] : passing) {
         if (const auto view = hooks_.view(type, id)) {
-            store_.pass_on(fmt::format(R"({{"from":"{}","type":"{}","id":"{}","view":{}}})",
-                                       self_.id, type, id, *view));
+            const std::string key = fmt::format("{} {}", type == "device" ? 0 : 1, id);
+            store_.pass_on(key, fmt::format(R"({{"from":"{}","type":"{}","id":"{}","view":{}}})",
+                                            self_.id, type, id, *view));
         }
     }
 }

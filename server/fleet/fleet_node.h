@@ -84,7 +84,8 @@ private:
     Clock::time_point next_beat_{};
     NodeMode mode_ = NodeMode::Active;  // As it was last told.
     std::optional<Clock::time_point> reachable_since_;
-    std::int64_t database_ms_ = 0;  // How long the last heartbeat took to be on disk.
+    Clock::time_point last_contact_{};  // The last heartbeat's end.
+    std::int64_t database_ms_ = 0;      // How long the last heartbeat took to be on disk.
 
     std::mutex mutex_;  // Guards the members below.
     std::condition_variable_any nudged_;

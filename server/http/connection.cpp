@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <poll.h>
 #include <string_view>
 #include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
 #include <utility>
 
 #include "server/http/request.h"
@@ -90,6 +93,25 @@ bool Connection::is_too_slow(std::int64_t moved) const {
     const double seconds = std::chrono::duration<double>(spent).count();
     return seconds > 0.0 &&
            static_cast<double>(moved) < seconds * static_cast<double>(patience_.least_bytes_per_s);
+}
+
+int with_low_number(int fd, int most) {
+    constexpr int kTries = 100;
+    for (int tries = 0; fd > most && tries < kTries; ++tries) {
+        const int other = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
+        if (other >= 0) {
+            ::close(std::max(fd, other));
+            fd = std::min(fd, other);
+        }
+        if (fd > most) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+    if (fd <= most) {
+        return fd;
+    }
+    ::close(fd);
+    return -1;
 }
 
 }  // namespace leafcutter::server

@@ -51,4 +51,7 @@ private:
     Clock::time_point since_ = Clock::now();
 };
 
+// The connection under a number of at most `most`, as soon as others are gone; -1: it is closed.
+int with_low_number(int fd, int most);
+
 }  // namespace leafcutter::server

@@ -20,6 +20,7 @@
 #include <spdlog/spdlog.h>
 
 #include "server/http/connection.h"
+#include "server/http/harden.h"
 #include "server/http/problem.h"
 
 namespace leafcutter::server {
@@ -113,17 +114,6 @@ void fill(httplib::Response& out, const Response& in) {
     }
 }
 
-void harden(Response& response) {
-    auto& headers = response.headers;
-    headers.emplace("X-Content-Type-Options", "nosniff");
-    headers.emplace("Referrer-Policy", "no-referrer");
-    headers.emplace("Content-Security-Policy",
-                    "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
-                    "img-src 'self' data: blob:; object-src 'none'; frame-ancestors 'none'; "
-                    "base-uri 'none'; form-action 'none'");
-    headers.emplace("Cache-Control", "no-store");
-}
-
 }  // namespace
 
 class Edge::Server : public httplib::Server {
@@ -191,7 +181,9 @@ private:
     };
 
     bool process_and_close_socket(socket_t fd) override {
-        parking_.park(fd);
+        if (const int low = with_low_number(fd, options_.most_fd); low >= 0) {
+            parking_.park(low);
+        }
         return true;
     }
 
@@ -294,6 +286,9 @@ private:
     void answer(Exchange& exchange, httplib::Response& out) {
         Response response = respond(exchange);
         harden(response);
+        if (response.events && hub_.clients() >= options_.most_streams) {
+            response = problem_response({503, "busy", "too many streams of live events"});
+        }
         if (response.events && exchange.head.request.method != "HEAD") {
             exchange.events = response.events;
         }

@@ -31,6 +31,8 @@ struct EdgeOptions {
     unsigned workers = 8;
     HeadRules rules;
     ParkingLimits parking;
+    int most_fd = 1 << 20;  // Of a connection: other files must find room.
+    std::size_t most_streams = 1 << 20;
     std::int64_t most_body_bytes = 256LL << 20;
 
     // Bodies up to this are waited for among the parked connections, so that a slow one holds no

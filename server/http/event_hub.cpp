@@ -154,14 +154,21 @@ void EventHub::welcome_new() {
         const std::scoped_lock lock(mutex_);
         newcomers.swap(newcomers_);
     }
-    for (auto& [fd, subscription] : newcomers) {
-        Client& client = clients_[fd];
-        client.subscription = std::move(subscription);
-        client.heartbeat = Clock::now() + kHeartbeat;
-        watch(epoll_, fd, EPOLL_CTL_ADD, EPOLLIN | EPOLLRDHUP);
+    for (auto next = newcomers.begin(); next != newcomers.end(); ++next) {
+        Client client;
+        client.subscription = next->second;
         client.most_bytes = SIZE_MAX;
-        greet(client);
+        try {
+            greet(client);
+        } catch (...) {  // Nobody is told what is new before he was told what he missed.
+            const std::scoped_lock lock(mutex_);
+            newcomers_.insert(newcomers_.begin(), std::make_move_iterator(next),
+                              std::make_move_iterator(newcomers.end()));
+            throw;
+        }
         client.most_bytes = client.out.size() + kSlack;
+        watch(epoll_, next->first, EPOLL_CTL_ADD, EPOLLIN | EPOLLRDHUP);
+        clients_[next->first] = std::move(client);
     }
 }
 
@@ -203,7 +210,7 @@ void EventHub::tell_stored() {
             const std::string text = clients_.empty() ? "" : frame(event);
             for (auto& [fd, client] : clients_) {
                 if (wants(client.subscription, event.job)) {
-                    append(client, text);
+                    append_flushing(fd, client, text);
                 }
             }
             told_ = event.seq;
@@ -270,14 +277,26 @@ void EventHub::dismiss() {
 }
 
 void EventHub::append(Client& client, std::string_view text) {
-    if (client.out.size() <= client.most_bytes) {
+    client.overrun = client.overrun || client.out.size() > client.most_bytes;
+    if (!client.overrun) {
         client.out += fmt::format("{:x}\r\n{}\r\n", text.size(), text);
     }
     client.heartbeat = Clock::now() + kHeartbeat;
 }
 
+// After an outage there is more at once than a client's buffer here holds, but it may be quick.
+void EventHub::append_flushing(int fd, Client& client, std::string_view text) {
+    if (client.out.size() > client.most_bytes) {
+        flush(fd, client);
+    }
+    append(client, text);
+}
+
 // False: the client is gone or too slow.
 bool EventHub::flush(int fd, Client& client) {
+    if (client.overrun) {
+        return false;
+    }
     while (!client.out.empty()) {
         const ssize_t sent =
             ::send(fd, client.out.data(), client.out.size(), MSG_DONTWAIT | MSG_NOSIGNAL);

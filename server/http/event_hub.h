@@ -75,6 +75,7 @@ private:
         EventSubscription subscription;
         std::string out;             // In chunks, not sent yet.
         std::size_t most_bytes = 0;  // Of `out`.
+        bool overrun = false;        // Something was left out: it has to begin anew.
         Clock::time_point heartbeat;
     };
 
@@ -87,8 +88,9 @@ private:
     void beat();
     void dismiss();
     void rouse();
-    void append(Client& client, std::string_view text);
-    bool flush(int fd, Client& client);
+    static void append(Client& client, std::string_view text);
+    static void append_flushing(int fd, Client& client, std::string_view text);
+    static bool flush(int fd, Client& client);
     void flush_all();
     void drop(int fd);
 

@@ -1,5 +1,6 @@
 #include "server/http/parking.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -122,10 +123,8 @@ void Parking::admit_arrivals() {
         arrivals.swap(arrivals_);
     }
     for (Arrival& arrival : arrivals) {
-        const bool full = guests_.size() >= limits_.connections;
-        if (full && arrival.guest.stay == Stay::Waiting) {
-            too_much_(arrival.fd, 503);
-            continue;
+        if (guests_.size() >= limits_.connections) {
+            send_one_away();
         }
         add_to_epoll(epoll_, arrival.fd);
         Guest& guest = guests_[arrival.fd] = std::move(arrival.guest);
@@ -190,6 +189,17 @@ void Parking::expel_late_ones() {
             ::close(fd);
         }
     }
+}
+
+// The one that would go next, with half a head or nothing: a crowd keeps nobody from the stop
+// button.
+void Parking::send_one_away() {
+    const auto least = std::min_element(
+        guests_.begin(), guests_.end(),
+        [](const auto& a, const auto& b) { return a.second.leaves < b.second.leaves; });
+    const int fd = least->first;
+    leave(fd);
+    ::close(fd);
 }
 
 void Parking::leave(int fd) {

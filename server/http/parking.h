@@ -21,7 +21,7 @@ struct ParkingLimits {
     std::chrono::milliseconds body_time{10000};  // For a body that is waited for here.
     std::chrono::milliseconds idle_time{30000};  // Between two requests.
     std::chrono::milliseconds drain_time{1000};  // For the last bytes of a refused client.
-    std::size_t connections = 1024;
+    std::size_t connections = 1024;  // More: one goes for each that comes.
 };
 
 class Parking {
@@ -70,6 +70,7 @@ private:
     void serve(int fd);
     void take_if_whole(int fd, Guest& guest);
     void expel_late_ones();
+    void send_one_away();
     void leave(int fd);
     void arrive(int fd, Guest guest);
 

@@ -98,6 +98,24 @@ bool send_output(int out, const ComputeOutput& output) {
     return send(out, kResultFrame, result_message(output));
 }
 
+// Up to the mesh, the last frame; none if the parent talks nonsense.
+std::optional<std::string> read_mesh(int in, FrameReader& reader, ComputeInput& input) {
+    std::string path;
+    while (auto frame = read_frame(in, reader)) {
+        if (frame->kind == kMeshFrame) {
+            return std::move(frame->bytes);
+        }
+        if (frame->kind == kPathFrame) {
+            path = std::move(frame->bytes);
+        } else if (frame->kind == kFileFrame) {
+            input.package.push_back({std::move(path), std::move(frame->bytes)});
+        } else {
+            break;
+        }
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 int serve_parent(int in, int out, const ComputeBudget& budget, const Compute& compute) {
@@ -105,14 +123,17 @@ int serve_parent(int in, int out, const ComputeBudget& budget, const Compute& co
     prepare_last_words(out, budget);
     FrameReader reader;
     const auto job = read_frame(in, reader);
-    const auto mesh = read_frame(in, reader);
-    if (!job || job->kind != kJobFrame || !mesh || mesh->kind != kMeshFrame) {
+    if (!job || job->kind != kJobFrame) {
         return 2;
     }
-    crash_point("compute.child");
     try {
         JobMessage message = read_job_message(job->bytes);
-        message.input.bytes = std::as_bytes(std::span(mesh->bytes));
+        const auto mesh = read_mesh(in, reader, message.input);
+        if (!mesh) {
+            return 2;
+        }
+        crash_point("compute.child");
+        message.input.bytes = std::as_bytes(std::span(*mesh));
         return send_output(out, compute(message.input, context_for(out, message.threads))) ? 0 : 1;
     } catch (const std::bad_alloc&) {
         say_no_memory();

@@ -19,6 +19,7 @@ std::string job_message(const ComputeInput& input, unsigned threads) {
                     {"params", input.params_json},
                     {"job_name", input.job_name},
                     {"materials", input.material_records},
+                    {"recut", input.recut_json},
                     {"threads", threads}});
 }
 
@@ -29,6 +30,7 @@ JobMessage read_job_message(const std::string& text) {
     message.input.params_json = job.at("params").get<std::string>();
     message.input.job_name = job.at("job_name").get<std::string>();
     message.input.material_records = job.at("materials").get<std::vector<std::string>>();
+    message.input.recut_json = job.at("recut").get<std::string>();
     message.threads = job.at("threads").get<unsigned>();
     return message;
 }

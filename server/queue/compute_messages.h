@@ -8,18 +8,18 @@
 
 namespace leafcutter::server {
 
-// Kinds of frames: to the child, then from it.
+// Kinds of frames: to the child (a job, files of a package, a mesh), then from it.
 constexpr char kJobFrame = 'J';
 constexpr char kMeshFrame = 'M';
 constexpr char kProgressFrame = 'P';
-constexpr char kPathFrame = 'N';  // Of the file that follows.
+constexpr char kPathFrame = 'N';  // Of the file that follows; both ways.
 constexpr char kFileFrame = 'F';
 constexpr char kResultFrame = 'R';  // The last one, as is kErrorFrame.
 constexpr char kErrorFrame = 'E';
 
 std::string job_message(const ComputeInput& input, unsigned threads);
 
-// Without the mesh. Throws nlohmann's exceptions, as all that follow.
+// Without mesh and files. Throws nlohmann's exceptions, as all that follow.
 struct JobMessage {
     ComputeInput input;
     unsigned threads = 1;

@@ -205,8 +205,12 @@ ComputeOutput compute(const ComputeBudget& budget,
                       const geometry::Context& context) {
     const auto* mesh = reinterpret_cast<const char*>(input.bytes.data());
     const std::string job = job_message(input, context.threads);
-    const std::string heading =
-        frame_head(kJobFrame, job.size()) + job + frame_head(kMeshFrame, input.bytes.size());
+    std::string heading = frame_head(kJobFrame, job.size()) + job;
+    for (const fab::PackageFile& file : input.package) {
+        heading += frame_head(kPathFrame, file.path.size()) + file.path;
+        heading += frame_head(kFileFrame, file.bytes.size()) + file.bytes;
+    }
+    heading += frame_head(kMeshFrame, input.bytes.size());
     std::string_view heading_left = heading;
     std::string_view mesh_left(mesh, input.bytes.size());
     Child child(budget);

@@ -109,7 +109,10 @@ ComputeRunner::ComputeRunner(Store& store,
       options_(options),
       on_progress_(std::move(on_progress)) {
     for (unsigned i = 0; i < options.workers; ++i) {
-        workers_.emplace_back([this](const std::stop_token& stop) { loop(stop); });
+        workers_.emplace_back([this](const std::stop_token& stop) { loop(stop, Lane::All); });
+    }
+    if (options.workers > 0) {
+        workers_.emplace_back([this](const std::stop_token& stop) { loop(stop, Lane::Recuts); });
     }
 }
 
@@ -151,7 +154,7 @@ std::optional<ComputeProgress> ComputeRunner::progress(const std::string& id) co
     return found == running_.end() ? std::nullopt : std::optional(found->second.progress);
 }
 
-void ComputeRunner::loop(const std::stop_token& stop) {
+void ComputeRunner::loop(const std::stop_token& stop, Lane lane) {
     unsigned long seen = 0;
     while (!stop.stop_requested()) {
         {
@@ -160,7 +163,7 @@ void ComputeRunner::loop(const std::stop_token& stop) {
             seen = wakes_;
         }
         try {
-            while (!stop.stop_requested() && compute_next(stop)) {
+            while (!stop.stop_requested() && compute_next(stop, lane)) {
             }
         } catch (const std::exception& error) {  // The store failed; the jobs are still there.
             spdlog::error("compute worker: {}", error.what());
@@ -172,8 +175,9 @@ void ComputeRunner::loop(const std::stop_token& stop) {
     }
 }
 
-bool ComputeRunner::compute_next(const std::stop_token& stop) {
-    const std::optional<JobRecord> job = store_.jobs.claim();
+bool ComputeRunner::compute_next(const std::stop_token& stop, Lane lane) {
+    const std::optional<JobRecord> job =
+        lane == Lane::Recuts ? store_.jobs.claim_recut() : store_.jobs.claim();
     if (!job) {
         return false;
     }
@@ -228,16 +232,13 @@ void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
     }
     geometry::Context context;
     context.stop = source.get_token();
-    context.threads = options_.threads_per_job;
+    context.threads = job.recut_json.empty() ? options_.threads_per_job : 1;
     context.clock_s = seconds_since_start;
     context.progress = [this, &job](std::string_view stage, double fraction) {
         note_progress(job.id, stage, fraction);
     };
     try {
-        const std::unique_ptr<MappedBlob> mesh = store_.blobs.map(job.file.sha256);
-        finish(job, compute_({job.file.name, mesh->bytes(), params_of(job), job.name,
-                              texts_of(store_.materials.list())},
-                             context));
+        finish(job, output_of(job, context));
     } catch (const geometry::Cancelled&) {
         const bool requeued = stop.stop_requested() && store_.jobs.requeue({job.id, job.fence});
         spdlog::info("job {}: {}", job.id, requeued ? "back in the queue" : "cancelled");
@@ -253,6 +254,34 @@ void ComputeRunner::compute(const JobRecord& job, const std::stop_token& stop) {
         store_.jobs.fail({job.id, job.fence},
                          {"internal", "internal", "the computation broke down"});
     }
+}
+
+ComputeOutput ComputeRunner::output_of(const JobRecord& job,
+                                       const geometry::Context& context) const {
+    if (!job.recut_json.empty()) {
+        return compute_(recut_input(job), context);
+    }
+    const std::unique_ptr<MappedBlob> mesh = store_.blobs.map(job.file.sha256);
+    return compute_(
+        {job.file.name, mesh->bytes(), params_of(job), job.name, texts_of(store_.materials.list())},
+        context);
+}
+
+ComputeInput ComputeRunner::recut_input(const JobRecord& job) const {
+    ComputeInput input;
+    input.file_name = job.file.name;
+    input.job_name = job.name;
+    input.material_records = texts_of(store_.materials.list());
+    input.recut_json = job.recut_json;
+    for (const char* path : kRecutFiles) {
+        const auto artifact = store_.jobs.artifact(job.recut_of, path);
+        if (!artifact) {
+            throw ComputeFailed({"bad-option", "no-package",
+                                 "the job whose pieces are wanted has no package any more"});
+        }
+        input.package.push_back({path, store_.blobs.read(artifact->sha256)});
+    }
+    return input;
 }
 
 // With the sheets of the store that it names, as they are at hand now.

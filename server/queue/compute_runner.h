@@ -1,4 +1,5 @@
-// Computes queued jobs on worker threads of its own, oldest first. A job that throws fails alone.
+// Computes queued jobs on worker threads of its own, oldest first; pieces that are wanted again
+// don't wait behind whole models. A job that throws fails alone.
 
 #pragma once
 
@@ -30,7 +31,14 @@ struct ComputeInput {
     std::string params_json;
     std::string job_name;
     std::vector<std::string> material_records;  // JSON, beside the built-in materials.
+
+    // Pieces of a package again: which ones, and what has to be known of it. Empty: the whole.
+    std::string recut_json = {};
+    std::vector<fab::PackageFile> package = {};
 };
+
+// All that a recut ever reads of a package.
+inline constexpr std::array kRecutFiles{"report.json", "strips.json", "layout.json"};
 
 struct SheetPlan {
     int number = 1;
@@ -70,7 +78,8 @@ public:
 };
 
 struct ComputeOptions {
-    unsigned workers = 1;          // Jobs at the same time; 0: none is computed here.
+    // Jobs at the same time, and one more that only cuts pieces again; 0: none is computed here.
+    unsigned workers = 1;
     unsigned threads_per_job = 1;  // Budget of each.
 };
 
@@ -100,7 +109,7 @@ public:
 
     // The jobs in work here, as they were claimed.
     std::vector<JobLease> running() const;
-    std::size_t workers() const { return workers_.size(); }
+    std::size_t workers() const { return options_.workers; }
 
     // Nothing if it is not in work.
     std::optional<ComputeProgress> progress(const std::string& id) const;
@@ -113,9 +122,13 @@ private:
         std::int64_t fence = 0;
     };
 
-    void loop(const std::stop_token& stop);
-    bool compute_next(const std::stop_token& stop);
+    enum class Lane { All, Recuts };
+
+    void loop(const std::stop_token& stop, Lane lane);
+    bool compute_next(const std::stop_token& stop, Lane lane);
     void compute(const JobRecord& job, const std::stop_token& stop);
+    ComputeOutput output_of(const JobRecord& job, const geometry::Context& context) const;
+    ComputeInput recut_input(const JobRecord& job) const;
     std::string params_of(const JobRecord& job) const;
     void give_back(const JobRecord& job, const std::stop_token& stop);
     void finish(const JobRecord& job, const ComputeOutput& output);

@@ -182,9 +182,9 @@ void DeviceRunner::frame() {
     throw drivers::Refused("there is no sheet to frame: put a cut in this machine's queue first");
 }
 
-bool DeviceRunner::has_framed(const std::string& program_sha256) const {
+std::string DeviceRunner::framed() const {
     const std::scoped_lock lock(mutex_);
-    return framed_ == program_sha256;
+    return framed_;
 }
 
 std::shared_ptr<drivers::Device> DeviceRunner::device() const {

@@ -105,8 +105,8 @@ public:
     // Traces the bounding box of the next cut's sheet with the beam off. Throws drivers::Refused.
     void frame();
 
-    // The last sheet traced on this machine since the daemon began was of that program.
-    bool has_framed(const std::string& program_sha256) const;
+    // The SHA-256 of the program whose sheet was traced last since the daemon began; empty: none.
+    std::string framed() const;
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -5,7 +5,6 @@
 #include <spdlog/spdlog.h>
 
 #include "server/retention.h"
-#include "server/store/ids.h"
 
 namespace leafcutter::server {
 
@@ -13,7 +12,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr std::int64_t kDayMs = 24LL * 3600 * 1000;
+constexpr std::chrono::hours kDay{24};
 
 // So many rows in one transaction: others wait for its end.
 constexpr int kAtOnce = 50;
@@ -28,8 +27,8 @@ void repeat(const std::stop_token& stop, Step step) {
 
 }  // namespace
 
-Housekeeper::Housekeeper(Store& store)
-    : store_(store), last_backup_(Clock::now()), next_sweep_(Clock::now() + 1min) {
+Housekeeper::Housekeeper(Store& store, const Duties& duties)
+    : store_(store), duties_(duties), last_backup_(Clock::now()), next_sweep_(Clock::now() + 1min) {
     thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
 }
 
@@ -72,8 +71,11 @@ void Housekeeper::work(const std::stop_token& stop) {
             return;
         }
     }
-    back_up_if_due();
-    let_go(stop);
+    if (duties_.has(kHousekeeping)) {
+        back_up_if_due();
+        let_go(stop);
+    }
+    sweep_if_due();
 }
 
 void Housekeeper::back_up_if_due() {
@@ -89,22 +91,21 @@ void Housekeeper::back_up_if_due() {
 
 void Housekeeper::let_go(const std::stop_token& stop) {
     const Retention retention = retention_of(store_.settings);
-    const std::int64_t now = wall_clock_ms();
     if (retention.jobs_days > 0) {
-        repeat(stop, [&] {
-            return store_.jobs.remove_finished(now - retention.jobs_days * kDayMs, kAtOnce);
-        });
+        repeat(stop,
+               [&] { return store_.jobs.remove_finished(retention.jobs_days * kDay, kAtOnce); });
     }
     if (retention.packages_days > 0) {
-        repeat(stop, [&] {
-            return store_.jobs.drop_packages(now - retention.packages_days * kDayMs, kAtOnce);
-        });
+        repeat(stop,
+               [&] { return store_.jobs.drop_packages(retention.packages_days * kDay, kAtOnce); });
     }
     if (retention.events_days > 0) {
-        repeat(stop, [&] {
-            return store_.events.forget(now - retention.events_days * kDayMs, kEventsAtOnce);
-        });
+        repeat(stop,
+               [&] { return store_.events.forget(retention.events_days * kDay, kEventsAtOnce); });
     }
+}
+
+void Housekeeper::sweep_if_due() {
     if (Clock::now() >= next_sweep_) {
         next_sweep_ = Clock::now() + 1h;
         const std::size_t removed = store_.collect_garbage();

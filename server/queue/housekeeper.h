@@ -9,13 +9,16 @@
 #include <stop_token>
 #include <thread>
 
+#include "server/fleet/duties.h"
 #include "server/store/store.h"
 
 namespace leafcutter::server {
 
 class Housekeeper {
 public:
-    explicit Housekeeper(Store& store);
+    // What concerns the rows is done while `duties` has kHousekeeping; the files are each node's
+    // own.
+    Housekeeper(Store& store, const Duties& duties);
     ~Housekeeper();
     Housekeeper(const Housekeeper&) = delete;
     Housekeeper& operator=(const Housekeeper&) = delete;
@@ -30,8 +33,10 @@ private:
     void work(const std::stop_token& stop);
     void back_up_if_due();
     void let_go(const std::stop_token& stop);
+    void sweep_if_due();
 
     Store& store_;
+    const Duties& duties_;
     Clock::time_point last_backup_;
     Clock::time_point next_sweep_;
     bool checked_ = false;

@@ -48,8 +48,9 @@ public:
     // The database below, for copying all of it.
     virtual SqlDatabase& rows() = 0;
 
-    // Tells all processes that share the database something that nobody keeps.
-    virtual void pass_on(const std::string& text) = 0;
+    // Tells all processes that share the database something that nobody keeps: of the same key the
+    // newest text, and what waits together in the order of its keys.
+    virtual void pass_on(const std::string& key, const std::string& text) = 0;
 
     virtual QueueAges queue_ages() const = 0;
 

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -19,8 +20,8 @@ public:
     virtual std::int64_t last_seq() const = 0;
     virtual std::vector<EventRecord> after(std::int64_t seq, int limit) const = 0;
 
-    // Lets go of at most `limit` events older than `before_ms`. Returns how many.
-    virtual int forget(std::int64_t before_ms, int limit) = 0;
+    // Lets go of at most `limit` events older than `age`. Returns how many.
+    virtual int forget(std::chrono::milliseconds age, int limit) = 0;
 };
 
 }  // namespace leafcutter::server

@@ -79,8 +79,14 @@ public:
     // Takes or prolongs the leases of this station's machines; those it holds now.
     virtual std::vector<MachineLease> hold_machines() = 0;
 
-    // Gives them back.
+    // Gives back all that this node holds, duties too.
     virtual void let_go_of_machines() = 0;
+
+    // Takes or prolongs the leases of what one node does for all; those it holds now.
+    virtual std::vector<std::string> hold_duties(const std::vector<std::string>& duties) = 0;
+
+    // Who has them; the name of the duty is in `device`.
+    virtual std::vector<MachineLease> duty_leases() const = 0;
 
     virtual std::vector<MachineLease> machine_leases() const = 0;
 

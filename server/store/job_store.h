@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -18,6 +19,8 @@ struct NewJob {
     std::string name;
     SourceFile file;
     std::string params_json;
+    std::string recut_of = {};  // As JobRecord says, like the next.
+    std::string recut_json = {};
 };
 
 // What a client said to make a repeated request harmless.
@@ -76,10 +79,8 @@ public:
     // Throws KeyReused.
     virtual AddedJob add(const NewJob& job, const std::optional<IdempotencyKey>& key) = 0;
 
-    // A job that never waits: pieces of `recut_of` again, computed already.
-    virtual JobRecord add_ready(const NewJob& job,
-                                const std::string& recut_of,
-                                const ComputedJob& result) = 0;
+    // A job that never waits: it is computed already.
+    virtual JobRecord add_ready(const NewJob& job, const ComputedJob& result) = 0;
 
     virtual std::optional<JobRecord> find(const std::string& id) const = 0;
 
@@ -93,6 +94,9 @@ public:
     // The first job of the queue becomes computing: that of the highest priority, and of these the
     // one in front. Nothing if none is queued, or the queue is paused.
     virtual std::optional<JobRecord> claim() = 0;
+
+    // The same among those that only cut pieces again: short work that somebody waits for.
+    virtual std::optional<JobRecord> claim_recut() = 0;
 
     // A paused queue lets nobody claim; what is computing goes on. The reason is for people.
     virtual void pause_queue(const std::string& reason) = 0;
@@ -136,10 +140,10 @@ public:
                                                    const std::string& path) const = 0;
     virtual bool refers_to_blob(const std::string& sha256) const = 0;
 
-    // Of jobs that ended before `before_ms` and have no cut under way, at most `limit`. Returns how
-    // many: those removed with all their rows, or those whose package was let go.
-    virtual int remove_finished(std::int64_t before_ms, int limit) = 0;
-    virtual int drop_packages(std::int64_t before_ms, int limit) = 0;
+    // Of jobs that ended longer ago than `age` and have no cut under way, at most `limit`. Returns
+    // how many: those removed with all their rows, or those whose package was let go.
+    virtual int remove_finished(std::chrono::milliseconds age, int limit) = 0;
+    virtual int drop_packages(std::chrono::milliseconds age, int limit) = 0;
 
     virtual std::int64_t count(JobState state) const = 0;
 

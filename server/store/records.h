@@ -64,6 +64,7 @@ struct JobRecord {
     std::vector<std::string> cuts;
     bool has_open_cut = false;
     std::string recut_of;             // The job whose pieces it cuts again; empty: none.
+    std::string recut_json;           // Which ones, see server/recut_wishes.h; empty: all is woven.
     std::string owner;                // The node that computes it, or did last.
     std::int64_t fence = 0;           // Grows with every claim.
     std::int64_t lease_until_ms = 0;  // Of the claim; 0: without end.

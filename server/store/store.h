@@ -63,7 +63,7 @@ public:
         return choice_.has_machines && device.station == choice_.scope.node;
     }
 
-    void pass_on(const std::string& text) { engine_->pass_on(text); }
+    void pass_on(const std::string& key, const std::string& text) { engine_->pass_on(key, text); }
 
     // Why it takes no changes; empty: it does.
     std::string trouble() const { return engine_->trouble(); }

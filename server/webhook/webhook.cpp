@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "server/auth/secrets.h"
+#include "server/fleet/duties.h"
 #include "server/store/event_log.h"
 #include "server/store/ids.h"
 #include "server/store/settings.h"
@@ -16,6 +17,12 @@
 namespace leafcutter::server {
 
 using namespace std::chrono_literals;
+
+namespace {
+
+constexpr auto kLookAgain = 10s;  // Besides every wake(): a place may be lost to another node.
+
+}  // namespace
 
 std::string webhook_body(const EventRecord& event) {
     const nlohmann::ordered_json body = {{"format", "leafcutter-webhook/1"},
@@ -38,19 +45,28 @@ std::chrono::seconds webhook_back_off(int failures) {
                                           1h);
 }
 
-Webhook::Webhook(WebhookConfig config, const EventLog& events, Settings& settings)
-    : config_(std::move(config)), events_(events), settings_(settings) {
-    const std::optional<std::string> known = settings_.get(place_key());
-    told_ = known ? nlohmann::json::parse(*known).get<std::int64_t>() : events_.last_seq();
-    if (!known) {
-        settings_.put(place_key(), std::to_string(told_));
+Webhook::Webhook(WebhookConfig config, const EventLog& events, Settings& settings, Duties& duties)
+    : config_(std::move(config)), events_(events), settings_(settings), duties_(duties) {
+    if (!settings_.get(place_key())) {
+        settings_.put(place_key(), std::to_string(events_.last_seq()));
     }
+    told_ = place();
+    duties.want(duty());
     thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
 }
 
 // The event log is the queue of what is still to be told; this is the hook's place in it.
 std::string Webhook::place_key() const {
     return fmt::format("webhook.told:{}", config_.url);
+}
+
+std::string Webhook::duty() const {
+    return fmt::format("webhook {}", config_.url);
+}
+
+std::int64_t Webhook::place() const {
+    const std::optional<std::string> known = settings_.get(place_key());
+    return known ? nlohmann::json::parse(*known).get<std::int64_t>() : events_.last_seq();
 }
 
 Webhook::~Webhook() {
@@ -69,9 +85,12 @@ void Webhook::wake() {
 void Webhook::loop(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         try {
-            if (!tell_next(stop)) {
+            if (!duties_.has(duty())) {
                 std::unique_lock lock(mutex_);
-                arrived_.wait(lock, stop, [this] { return grew_; });
+                arrived_.wait_for(lock, stop, 1s, [] { return false; });
+            } else if (!tell_next(stop)) {
+                std::unique_lock lock(mutex_);
+                arrived_.wait_for(lock, stop, kLookAgain, [this] { return grew_; });
                 grew_ = false;
             }
         } catch (const std::exception& error) {  // The store failed: it is asked again later.
@@ -84,6 +103,7 @@ void Webhook::loop(const std::stop_token& stop) {
 
 // False: nothing is left to be told.
 bool Webhook::tell_next(const std::stop_token& stop) {
+    told_ = place();  // Another node may have gone on.
     const std::vector<EventRecord> next = events_.after(told_, 1);
     if (next.empty()) {
         return false;
@@ -108,8 +128,10 @@ bool Webhook::tell_next(const std::stop_token& stop) {
 }
 
 void Webhook::pass(const EventRecord& event) {
-    settings_.put(place_key(), std::to_string(event.seq));
-    told_ = event.seq;
+    // Not if this node was frozen in mid-call and another one has told more since.
+    if (settings_.replace(place_key(), std::to_string(told_), std::to_string(event.seq))) {
+        told_ = event.seq;
+    }
 }
 
 bool Webhook::deliver(const EventRecord& event) {

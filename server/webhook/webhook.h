@@ -1,5 +1,6 @@
 // Calls another program's address whenever a job or a cut changes its state. Every event is told in
-// order and at least once: a call that fails is repeated, ever more rarely, for about a day.
+// order and at least once: a call that fails is repeated, ever more rarely, for about a day. What
+// is told twice has the same X-Leafcutter-Delivery, the number of its event.
 //
 // The body is JSON, leafcutter-webhook/1. The header X-Leafcutter-Signature is "sha256=" and the
 // hex HMAC-SHA256, with the hook's secret, of the X-Leafcutter-Timestamp (seconds since 1970), a
@@ -22,6 +23,7 @@
 
 namespace leafcutter::server {
 
+class Duties;
 class EventLog;
 class Settings;
 
@@ -45,7 +47,8 @@ public:
     static constexpr int kMostFailures = 35;
 
     // A hook that is new is told of what happens from now on.
-    Webhook(WebhookConfig config, const EventLog& events, Settings& settings);
+    // In a fleet one of the nodes that have it tells it, and another one goes on where that ends.
+    Webhook(WebhookConfig config, const EventLog& events, Settings& settings, Duties& duties);
     ~Webhook();
     Webhook(const Webhook&) = delete;
     Webhook& operator=(const Webhook&) = delete;
@@ -64,10 +67,13 @@ private:
     bool deliver(const EventRecord& event);
     void pass(const EventRecord& event);
     std::string place_key() const;
+    std::string duty() const;
+    std::int64_t place() const;
 
     const WebhookConfig config_;
     const EventLog& events_;
     Settings& settings_;
+    const Duties& duties_;
     std::atomic<std::int64_t> told_{0};
     std::atomic<int> failures_{0};
 

@@ -2,9 +2,12 @@
 """The command line against a running daemon. Usage: cli_test.py LEAFCUTTER"""
 import json
 import os
+import pty
 import subprocess
 import tempfile
+import time
 import unittest
+import zipfile
 from pathlib import Path
 
 import daemon
@@ -66,6 +69,93 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(self.json("cuts", "show", cut["id"])["state"], "done")
         self.assertIn(cut["id"], self.run_it("cuts"))
         self.assertEqual(self.json("jobs", "show", job["id"])["state"], "done")
+
+    def until(self, look):
+        deadline = time.monotonic() + 30
+        while not (found := look()):
+            self.assertLess(time.monotonic(), deadline)
+        return found
+
+    def cut_until(self, cut, condition):
+        return self.until(lambda: condition(now := self.json("cuts", "show", cut)) and now)
+
+    def test_the_rest_of_a_cut_is_finished_from_the_shell(self):
+        self.assertEqual(self.json("devices", "put", "slow", "sim:grbl?speed=4", "--bed", "500", "300")["bed_mm"], [500, 300])
+        job = self.json("submit", "plate.off", *SETS, "--wait")
+        cut = self.json("cuts", "add", job["id"], "--device", "slow", "--sheet", "1")["id"]
+        self.cut_until(cut, lambda cut: "start" in cut["actions"])
+        self.run_it("cuts", "start", cut, "--bed-clear")
+        self.cut_until(cut, lambda cut: cut["progress"]["lines_acknowledged"] > 30)
+        self.run_it("devices", "override", "slow", "--feed", "120")
+        self.run_it("cuts", "pause", cut)
+        self.cut_until(cut, lambda cut: cut["state"] == "paused")
+        self.run_it("cuts", "abort", cut)
+        over = self.cut_until(cut, lambda cut: "finish" in cut["actions"])
+        self.assertEqual(over["state"], "aborted")
+        self.run_it("cuts", "finish", cut, status=2)  # Nobody looked at the sheet.
+        self.run_it("devices", "home", "slow")
+        rest = self.json("cuts", "finish", cut, "--material-in-place", "--homed", "--burnt-mm",
+                         str(round(over["beam"]["burnt_mm"], 2)))
+        self.assertEqual((rest["rest_of"], rest["state"]), (cut, "waiting"))
+        self.cut_until(rest["id"], lambda cut: "start" in cut["actions"])
+        self.assertEqual(self.json("cuts", "start", rest["id"], "--bed-clear", "--wait")["state"], "done")
+        self.assertIn("slow", self.run_it("devices", "show", "slow"))
+        self.run_it("devices", "remove", "slow")
+        self.run_it("devices", "show", "slow", status=1)
+
+    def test_machines_are_driven_from_the_shell(self):
+        self.run_it("devices", "put", "bench", "sim:grbl", "--name", "Bench")
+        at = lambda: self.json("devices", "show", "bench")["status"]["work_position_mm"][:2]  # noqa: E731
+        self.until(lambda: self.json("devices", "show", "bench")["status"]["state"] == "idle")
+        self.run_it("devices", "home", "bench")
+        self.until(lambda: at() == [0, 0])
+        self.run_it("devices", "jog", "bench", "--dx", "5", "--dy", "3", "--feed", "3000")
+        self.until(lambda: at() == [5, 3])
+        for word in ("hold", "resume", "stop", "reset", "unlock"):
+            self.assertEqual(self.json("devices", word, "bench"), {})
+        self.run_it("devices", "console", "bench", "$$")
+        self.run_it("devices", "console", "bench", "!", status=2)
+        self.run_it("devices", "override", "bench", status=2)
+        self.run_it("devices", "remove", "bench")
+
+    def test_jobs_are_made_of_jobs_and_fetched_from_the_shell(self):
+        job = self.json("submit", "plate.off", *SETS, "--wait")["id"]
+        pieces = self.json("jobs", "recut", job, "W1", "--wait")
+        self.assertEqual((pieces["state"], pieces["recut_of"]), ("ready", job))
+        self.run_it("jobs", "recut", job, "W99", status=2)
+        again = self.json("jobs", "recompute", job, *SETS, "--set", "grid.rows=3", "--wait")
+        self.assertEqual((again["state"], again["params"]["grid"]["rows"]), ("ready", 3))
+        self.assertEqual(self.json("jobs", "download", job, "-o", "job.zip"), {"file": "job.zip"})
+        with zipfile.ZipFile(self.home / "job.zip") as package:
+            self.assertIsNone(package.testzip())
+            self.assertIn("report.json", package.namelist())
+        self.run_it("jobs", "download", "j_none", "-o", "none.zip", status=1)
+        self.assertEqual(sorted(self.home.glob("none.zip*")), [])
+
+    def test_progress_is_a_line_on_a_terminal_and_objects_with_json(self):
+        environment = {**os.environ, "LEAFCUTTER_URL": f"http://127.0.0.1:{self.daemon.port}"}
+        submit = [daemon.BINARY, "submit", "plate.off", *SETS, "--set", "nesting.time_s=1", "--wait"]
+        quiet = subprocess.run(submit, capture_output=True, text=True, timeout=60, env=environment, cwd=self.home)
+        self.assertEqual((quiet.returncode, quiet.stderr), (0, ""))
+        lines = subprocess.run([*submit, "--json"], capture_output=True, text=True, timeout=60, env=environment,
+                               cwd=self.home).stderr.splitlines()
+        told = [json.loads(line) for line in lines]
+        self.assertTrue(told)
+        for each in told:
+            self.assertEqual(set(each) & {"stage", "fraction"}, {"stage", "fraction"}, each)
+        terminal, other = pty.openpty()
+        process = subprocess.Popen(submit, stdout=subprocess.DEVNULL, stderr=other, env=environment, cwd=self.home)
+        os.close(other)
+        shown = b""
+        try:
+            while part := os.read(terminal, 4096):
+                shown += part
+        except OSError:  # The terminal is closed.
+            pass
+        os.close(terminal)
+        self.assertEqual(process.wait(), 0)
+        self.assertIn(b"%", shown)
+        self.assertIn(b"\r", shown)
 
     def test_the_queue_is_led_from_the_shell(self):
         self.run_it("jobs", "pause", "--reason", "lunch")

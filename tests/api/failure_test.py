@@ -3,10 +3,13 @@
 daemons, uploads that break off, and jobs that break their process.
 Usage: failure_test.py LEAFCUTTER"""
 import collections
+import concurrent.futures
+import fcntl
 import hashlib
 import json
 import os
 import random
+import resource
 import shutil
 import socket
 import sqlite3
@@ -210,6 +213,45 @@ class FailureTest(unittest.TestCase):
         self.assertEqual(status, 202)
         self.assertEqual(self.ended(job)["state"], "ready")
 
+    def test_a_hundred_senders_of_one_key_make_one_job(self):
+        self.assertTrue(self.world.start())
+        self.world.ask("PUT", f"/blobs/{SHA}", PLATE)
+        self.world.ask("POST", "/queue/pause", {})
+        wish = {"blob": SHA, "file_name": "plate.off", "name": "once", "params": PARAMS}
+        with concurrent.futures.ThreadPoolExecutor(100) as senders:
+            answers = list(senders.map(
+                lambda _: self.world.ask("POST", "/jobs", wish, {"Idempotency-Key": "the one"}), range(100)))
+        self.assertEqual({status for status, _ in answers}, {201})
+        self.assertEqual(len({job["id"] for _, job in answers}), 1)
+        self.assertEqual(len(self.world.ask("GET", "/jobs")[1]["jobs"]), 1)
+
+    def test_hostile_meshes_fail_their_own_jobs(self):
+        config = Path(self.folder.name) / "small.toml"
+        config.write_text("job_memory_mb = 300\ncompute_workers = 2\nthreads_per_job = 1\n")
+        self.world.daemon = Daemon(self.world.state, self.world.port, "--config", str(config))
+        many = b"OFF\n4000000000 4000000000 0\n0 0 0\n3 0 1 2\n"
+        ply = b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n"
+        stl = bytes(80) + (2**32 - 1).to_bytes(4, "little") + bytes(50)
+        side = 700  # A mesh that is as large as it says: half a million vertices.
+        points = b"".join(b"%d %d 0\n" % (i % side, i // side) for i in range(side * side))
+        corners = (row * side + column for row in range(side - 1) for column in range(side - 1))
+        faces = b"".join(b"3 %d %d %d\n3 %d %d %d\n" % (a, a + 1, a + side + 1, a, a + side + 1, a + side) for a in corners)
+        large = b"OFF\n%d %d 0\n" % (side * side, 2 * (side - 1) ** 2) + points + faces
+        ends = {}
+        for name, mesh in (("many.off", many), ("ply.ply", ply), ("stl.stl", stl), ("include.obj", b"mtllib /etc/passwd\n"),
+                           ("noise.off", random.Random(3).randbytes(5000)), ("nul.obj", b"v 0 0 \0\n" * 1000),
+                           ("deep.obj", b"f " + b"1 " * 500000 + b"\n"), ("large.off", large)):
+            sha = hashlib.sha256(mesh).hexdigest()
+            self.world.ask("PUT", f"/blobs/{sha}", mesh)
+            ends[name] = self.world.ask("POST", "/jobs", {"blob": sha, "file_name": name, "name": name})[1]
+        good = self.submit("good")
+        self.assertEqual(self.ended(good)["state"], "ready")
+        for name, job in ends.items():
+            failed = self.ended(job)
+            wanted = ("budget", "memory-budget") if name == "large.off" else ("bad-file", failed["error"]["code"])
+            self.assertEqual((failed["error"]["kind"], failed["error"]["code"], failed["attempt"]), (*wanted, 1), name)
+        self.assertLess(self.world.daemon.rss_mb(), 100)
+
     def test_a_job_beyond_its_memory_fails_alone(self):
         config = Path(self.folder.name) / "small.toml"
         config.write_text("job_memory_mb = 70\ncompute_workers = 1\nthreads_per_job = 1\n")
@@ -237,6 +279,70 @@ class FailureTest(unittest.TestCase):
             self.assertEqual(self.ended(self.submit("at " + jump))["state"], "ready")
         names = [job["name"] for job in self.world.ask("GET", "/jobs")[1]["jobs"]]
         self.assertEqual(names, ["at +1h", "at -365d", "at +365d"])  # Order is that of events.
+
+
+    def test_nobody_reads_the_log_and_nothing_waits(self):
+        reading, writing = os.pipe()
+        fcntl.fcntl(writing, fcntl.F_SETPIPE_SZ, 8192)
+        process = subprocess.Popen([daemon.BINARY, "serve", "--state", str(self.world.state), "--listen",
+                                    f"127.0.0.1:{self.world.port}"], stdout=subprocess.PIPE, stderr=writing, text=True)
+        os.close(writing)
+        process.stdout.readline()
+        self.world.daemon = Daemon.__new__(Daemon)
+        self.world.daemon.port, self.world.daemon.process = self.world.port, process
+        for number in range(30):
+            self.ended(self.submit(f"loud {number}"))
+        self.assertEqual(self.world.ask("POST", "/devices/sim/commands", {"command": "stop"})[0], 202)
+        os.set_blocking(reading, False)
+        lines = os.read(reading, 1 << 20).splitlines()
+        self.assertGreater(len(lines), 5)
+        self.world.daemon.stop()
+        rest = os.read(reading, 1 << 20).splitlines()
+        os.close(reading)
+        self.assertTrue(any(b"lines lost: nobody read them" in line for line in rest), rest)
+
+    def test_more_connections_than_files_leave_the_daemon_alive(self):
+        def few_files():
+            resource.setrlimit(resource.RLIMIT_NOFILE, (96, 96))
+
+        process = subprocess.Popen([daemon.BINARY, "serve", "--state", str(self.world.state), "--listen",
+                                    f"127.0.0.1:{self.world.port}"], stdout=subprocess.PIPE,
+                                   stderr=subprocess.DEVNULL, text=True, preexec_fn=few_files)
+        process.stdout.readline()
+        self.world.daemon = Daemon.__new__(Daemon)
+        self.world.daemon.port, self.world.daemon.process = self.world.port, process
+        self.submit("before")
+        crowd = []
+        for _ in range(300):
+            link = socket.create_connection(("127.0.0.1", self.world.port))
+            link.sendall(b"GET / HTTP/1.1\r\nHost: local")
+            crowd.append(link)
+        # What works for machines and jobs has kept its files.
+        self.assertEqual(self.world.ask("POST", "/devices/sim/commands", {"command": "stop"})[0], 202)
+        self.assertEqual(self.ended(self.submit("meanwhile"))["state"], "ready")
+        for link in crowd:
+            link.close()
+        self.assertEqual(self.ended(self.submit("after"))["state"], "ready")
+        self.assertEqual(self.world.daemon.stop(), 0)
+        self.world.daemon = None
+
+    def test_a_machine_that_is_pulled_out_interrupts_its_cut_and_nothing_goes_on_by_itself(self):
+        laser = Laser(Path(self.folder.name), 4)
+        self.assertTrue(self.world.start())
+        self.world.ask("PUT", "/devices/laser", {"name": "laser", "uri": laser.uri, "auto_start": True})
+        job = self.ended(self.submit("pulled"))
+        cut = self.world.ask("POST", f"/jobs/{job['id']}/cuts", {"device": "laser"})[1]
+        self.world.wait(f"/cuts/{cut['id']}", lambda cut: cut["progress"]["lines_acknowledged"] > 10)
+        laser.stop()
+        over = self.world.wait(f"/cuts/{cut['id']}", lambda cut: cut["state"] not in ("cutting", "paused"))
+        self.assertEqual((over["state"], over["actions"]), ("interrupted", ["finish"]))
+        self.assertGreater(over["beam"]["most_mm"], 0)
+        again = Laser(Path(self.folder.name), 4)
+        self.addCleanup(again.stop)
+        self.world.ask("POST", "/devices/laser/commands", {"command": "reset"})
+        self.world.wait("/devices/laser", lambda device: device["status"]["state"] != "disconnected")
+        waiting = self.world.ask("GET", "/cuts/" + cut["id"])[1]
+        self.assertEqual(waiting["state"], "interrupted")
 
 
 if __name__ == "__main__":

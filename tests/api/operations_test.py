@@ -286,6 +286,15 @@ class Stops(unittest.TestCase):
             finally:
                 daemon.stop()
 
+    def test_a_second_signal_ends_it_at_once(self):
+        with tempfile.TemporaryDirectory() as folder:
+            daemon = Configured(folder, "stop_policy = 'finish'\n")
+            path = self.cutting(daemon)
+            daemon.process.send_signal(signal.SIGTERM)
+            until(lambda: "stopping" in daemon.log_path.read_text())
+            self.assertEqual(daemon.get(path)["state"], "cutting")
+            self.assertEqual(daemon.stop(), -signal.SIGTERM)
+
     def test_pause_leaves_a_cut_that_can_be_finished(self):
         cut = self.ends_as("pause")
         self.assertEqual((cut["state"], cut["actions"]), ("interrupted", ["finish"]))

@@ -31,6 +31,15 @@ class Unit(unittest.TestCase):
             self.assertIn(f"DeviceAllow={device} rw", unit)
         self.assertNotIn("PrivateDevices=yes", unit)
 
+    def test_computations_may_step_back_and_keep_their_budgets(self):
+        filters = [line.split("=", 1)[1] for line in UNIT.read_text().splitlines() if line.startswith("SystemCallFilter=")]
+        self.assertEqual(filters[0], "@system-service")
+        self.assertEqual(filters[-1], "setpriority")
+        # The budget of memory is set by a call that none of the groups taken away holds.
+        taken_away = run("systemd-analyze", "syscall-filter", "@privileged", "@resources").split()
+        self.assertNotIn("prlimit64", taken_away)
+        self.assertIn("setpriority", taken_away)
+
 
 @unittest.skipUnless(shutil.which("cpack") and shutil.which("fakeroot") and shutil.which("dpkg-deb"),
                      "cpack, fakeroot or dpkg-deb is missing")

@@ -126,6 +126,12 @@ class CommandLine(unittest.TestCase):
 
 
 class Api(Served):
+    def recut(self, job, wish):
+        status, headers, made = self.ask("POST", f"/jobs/{job['id']}/recut", wish)
+        self.assertEqual(status, 201, made)
+        self.assertEqual(headers["Location"], f"/api/v1/jobs/{made['id']}")
+        return self.wait(f"/jobs/{made['id']}", lambda job: job["state"] not in ("queued", "computing"))
+
     def test_materials_are_added_changed_and_removed(self):
         built_in = self.get("/materials/felt-1")
         self.assertEqual(built_in["origin"], "built-in")
@@ -152,18 +158,16 @@ class Api(Served):
         self.assertEqual({sheet["material"] for sheet in job["sheets"]}, {"small"})
         self.ask("DELETE", "/materials/small")
         # The package knows what it was made of.
-        status, _, again = self.ask("POST", f"/jobs/{job['id']}/recut", {"pieces": ["W1.1"]})
-        self.assertEqual(status, 201, again)
+        again = self.recut(job, {"pieces": ["W1.1"]})
+        self.assertEqual(again["state"], "ready", again)
         layout = self.get(f"/jobs/{again['id']}/artifacts/layout.json")
         self.assertEqual((layout["sheets"][0]["width_mm"], layout["sheets"][0]["height_mm"]), (250, 180))
 
     def test_recut_is_a_job_that_can_be_cut(self):
         path = f"/jobs/{self.job['id']}"
         self.assertIn("recut", self.job["actions"])
-        status, headers, job = self.ask("POST", f"{path}/recut", {
-            "pieces": ["W1.1", "P1.1"], "sheet": {"width_mm": 210, "height_mm": 148}})
-        self.assertEqual((status, job["state"], job["recut_of"]), (201, "ready", self.job["id"]), job)
-        self.assertEqual(headers["Location"], f"/api/v1/jobs/{job['id']}")
+        job = self.recut(self.job, {"pieces": ["W1.1", "P1.1"], "sheet": {"width_mm": 210, "height_mm": 148}})
+        self.assertEqual((job["state"], job["recut_of"]), ("ready", self.job["id"]), job)
         whole = outlines(self.get(f"{path}/artifacts/strips.json"))
         pieces = outlines(self.get(f"/jobs/{job['id']}/artifacts/strips.json"))
         self.assertEqual(pieces, {piece: whole[piece] for piece in ("W1.1", "P1.1")})
@@ -187,13 +191,45 @@ class Api(Served):
     def test_recut_refuses_what_cannot_be(self):
         path = f"/jobs/{self.job['id']}/recut"
         for body, status in (({}, 422), ({"pieces": []}, 422), ({"pieces": ["W99.9"]}, 422),
-                             ({"pieces": ["W1.1"], "sheet": {"width_mm": 9, "height_mm": 9}}, 422),
                              ({"pieces": ["W1.1"], "material": "tin"}, 422),
                              ({"pieces": ["W1.1"], "colour": 1}, 422)):
             answer = self.ask("POST", path, body)
             self.assertEqual(answer[0], status, (body, answer[2]))
         self.assertIn("the nearest are", self.ask("POST", path, {"pieces": ["W99.9"]})[2]["detail"])
         self.assertEqual(self.ask("POST", "/jobs/j_nothing/recut", {"pieces": ["W1.1"]})[0], 404)
+        small = self.recut(self.job, {"pieces": ["W1.1"], "sheet": {"width_mm": 9, "height_mm": 9}})
+        self.assertEqual((small["state"], small["error"]["kind"]), ("failed", "bad-option"))
+        self.assertIn("9 x 9 mm", small["error"]["detail"])
+
+    def test_recut_is_asked_for_once_however_often_it_is_sent(self):
+        path, wish = f"/jobs/{self.job['id']}/recut", {"pieces": ["W1.1"]}
+        key = {"Idempotency-Key": "again"}
+        first = self.ask("POST", path, wish, key)[2]
+        self.assertEqual(self.ask("POST", path, wish, key)[2]["id"], first["id"])
+        self.assertEqual(self.ask("POST", path, {"pieces": ["P1.1"]}, key)[0], 422)
+
+    def test_recut_waits_behind_no_model(self):
+        slow = {**PARAMS, "grid": {"rows": 40, "cols": 40}, "nesting": {"time_s": 600}}
+        models = [self.post_job(name=f"slow {i}.off", params=slow) for i in range(2)]
+        try:
+            self.wait(f"/jobs/{models[0]['id']}", lambda job: job["state"] == "computing")
+            self.assertEqual(self.recut(self.job, {"pieces": ["W1.1"]})["state"], "ready")
+            self.assertEqual([self.get(f"/jobs/{job['id']}")["state"] for job in models], ["computing", "queued"])
+        finally:
+            for job in models:
+                self.ask("DELETE", f"/jobs/{job['id']}")
+
+    def test_recut_of_a_job_that_is_gone_fails(self):
+        source = self.ready_job(self.post_job(name="short lived.off"))
+        self.ask("POST", "/queue/pause", {})
+        try:
+            again = self.ask("POST", f"/jobs/{source['id']}/recut", {"pieces": ["W1.1"]})[2]
+            self.assertEqual(again.get("state"), "queued", again)
+            self.assertEqual(self.ask("DELETE", f"/jobs/{source['id']}")[0], 204)
+        finally:
+            self.ask("POST", "/queue/resume", {})
+        failed = self.wait(f"/jobs/{again['id']}", lambda job: job["state"] not in ("queued", "computing"))
+        self.assertEqual((failed["state"], failed["error"]["code"]), ("failed", "no-package"))
 
 
 if __name__ == "__main__":

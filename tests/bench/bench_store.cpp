@@ -66,7 +66,7 @@ void fill(Store& store, int jobs, int queued) {
             for (int i = next++; i < jobs; i = next++) {
                 const NewJob job{fmt::format("job {}", i), {"a.obj", 3, sha256_of("abc")}, "{}"};
                 if (i < jobs - queued) {
-                    store.jobs.add_ready(job, "", result);
+                    store.jobs.add_ready(job, result);
                 } else {
                     store.jobs.add(job, std::nullopt);
                 }

@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 
 BINARIES = Path("/usr/lib/postgresql/15/bin")
+FAKETIME = next(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"), None)
 KEY = "a key that all nodes of the test know"
 PASSWORD = "a long enough password"
 
@@ -22,7 +23,7 @@ def namespaced():
     """Runs this very program again in a network of its own; whether it is in one now."""
     if os.environ.get("LEAFCUTTER_FLEET_NET"):
         return os.environ["LEAFCUTTER_FLEET_NET"] == "own"
-    permitted = os.geteuid() == 0 and all(shutil.which(tool) for tool in ("ip", "unshare", "nsenter"))
+    permitted = os.geteuid() == 0 and all(shutil.which(tool) for tool in ("ip", "nft", "unshare", "nsenter"))
     permitted = permitted and subprocess.run(["unshare", "-n", "ip", "link", "set", "lo", "up"],
                                              stderr=subprocess.DEVNULL).returncode == 0
     print("network namespaces" if permitted else
@@ -40,6 +41,35 @@ def free_port():
 
 def run(*command):
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+
+
+def call(at, method, path, body=None, headers=None, timeout=20):
+    """`at`: address and port. The status, and the answer's JSON or bytes."""
+    connection = http.client.HTTPConnection(*at, timeout=timeout)
+    text = body if isinstance(body, (bytes, type(None))) else json.dumps(body)
+    kind = {} if isinstance(body, (bytes, type(None))) else {"Content-Type": "application/json"}
+    try:
+        connection.request(method, "/api/v1" + path, text, {**kind, **(headers or {})})
+        answer = connection.getresponse()
+        content = answer.read()
+        return answer.status, json.loads(content) if content[:1] in (b"{", b"[") else content
+    finally:
+        connection.close()
+
+
+def log_in(at):
+    """Headers with a key that may do everything."""
+    connection = http.client.HTTPConnection(*at, timeout=20)
+    connection.request("POST", "/api/v1/session", json.dumps({"user": "anna", "password": PASSWORD}),
+                       {"Content-Type": "application/json"})
+    answer = connection.getresponse()
+    session = json.loads(answer.read())
+    cookie = answer.headers["Set-Cookie"].split(";")[0]
+    connection.close()
+    headers = {"Cookie": cookie, "X-CSRF-Token": session["csrf_token"]}
+    status, key = call(at, "POST", "/keys", {"label": "test", "role": "admin", "may_fire": True}, headers)
+    assert status == 201, key
+    return {"Authorization": "Bearer " + key["key"]}
 
 
 class Postgres:
@@ -66,9 +96,39 @@ class Postgres:
         """As kill -9 would end it."""
         self.tool("pg_ctl", "-m", "immediate", "stop")
 
+    def signal(self, number):
+        """To the server and all that it has begun."""
+        server = (self.data / "postmaster.pid").read_text().split("\n")[0]
+        own = Path(f"/proc/{server}/task/{server}/children").read_text().split()
+        for process in [server, *own]:
+            try:
+                os.kill(int(process), number)
+            except ProcessLookupError:  # It has ended meanwhile.
+                pass
+
+    def ask(self, sql):
+        """The first column of the first row."""
+        return subprocess.run([BINARIES / "psql", "-XAtqc", sql, self.uri], check=True, capture_output=True,
+                              text=True).stdout.strip()
+
     @property
     def uri(self):
         return f"postgresql://leafcutter@{self.address}:{self.port}/postgres"
+
+
+class Machine:
+    """A simulated laser beside its station: nothing that happens to that process happens to this one."""
+
+    def __init__(self, enter, binary, burns, speed):
+        self.process = subprocess.Popen([*enter, binary, "simulate", "grbl", "--tcp", "0", "--burn", burns, "--speed",
+                                         str(speed), "--width", "600", "--height", "400"],
+                                        stdout=subprocess.PIPE, text=True)
+        self.uri = self.process.stdout.readline().strip()
+
+    def end(self):
+        self.process.kill()
+        self.process.wait()
+        self.process.stdout.close()
 
 
 class Node:
@@ -87,6 +147,8 @@ class Node:
             self.host = subprocess.Popen(["unshare", "-n", "sleep", "infinity"])
             self.enter = ["nsenter", "-t", str(self.host.pid), "-n"]
             self.wire()
+        self.machine = (Machine(self.enter, fleet.binary, self.burns, options.get("speed", 200))
+                        if role == "station" else None)
         self.state.mkdir()
         self.write_config()
         self.start()
@@ -119,20 +181,21 @@ threads_per_job = 1
             text += f"""
 [[device]]
 id = "{self.device}"
-uri = "sim:grbl?speed={self.options.get('speed', 200)}&burn={self.burns}"
+uri = "{self.machine.uri}"
 auto_start = {str(self.options.get('auto_start', True)).lower()}
 bed_mm = [600, 400]
 """
-        (self.state / "config.toml").write_text(text)
+        (self.state / "config.toml").write_text(text + self.options.get("config", ""))
 
     def start(self):
-        skewed = ["faketime", "-f", self.skew] if self.skew and shutil.which("faketime") else []
-        environment = {**os.environ, "FAKETIME_DONT_FAKE_MONOTONIC": "1"}
-        self.log = open(self.fleet.folder / f"{self.name}.log", "a")
-        self.process = subprocess.Popen(
-            [*self.enter, *skewed, self.fleet.binary, "serve", "--config", self.state / "config.toml", "--state",
-             self.state / "state", "--listen", f"{self.address}:{self.port}"],
-            stdout=subprocess.PIPE, stderr=self.log, text=True, env=environment)
+        # Without the wrapper of that name: a signal is for the node itself.
+        skewed = ({"LD_PRELOAD": str(FAKETIME), "FAKETIME": self.skew, "FAKETIME_DONT_FAKE_MONOTONIC": "1"}
+                  if self.skew and FAKETIME else {})
+        with open(self.fleet.folder / f"{self.name}.log", "a") as log:
+            self.process = subprocess.Popen(
+                [*self.enter, self.fleet.binary, "serve", "--config", self.state / "config.toml", "--state",
+                 self.state / "state", "--listen", f"{self.address}:{self.port}"],
+                stdout=subprocess.PIPE, stderr=log, text=True, env={**os.environ, **skewed})
         line = self.process.stdout.readline()
         assert "http://" in line, f"{self.name} did not start: {line!r}\n" + self.words()
 
@@ -153,17 +216,16 @@ bed_mm = [600, 400]
     def heal(self):
         run("ip", "link", "set", self.link, "up")
 
+    def lose_packets(self, percent):
+        """Of those that come in."""
+        rules = "flush ruleset"
+        if percent > 0:
+            rules += (f"\nadd table inet loss\nadd chain inet loss in {{ type filter hook input priority 0; }}\n"
+                      f'add rule inet loss in iifname "eth0" numgen random mod 100 < {percent} drop')
+        subprocess.run([*self.enter, "nft", "-f", "-"], input=rules + "\n", text=True, check=True)
+
     def call(self, method, path, body=None, headers=None, timeout=20):
-        connection = http.client.HTTPConnection(self.address, self.port, timeout=timeout)
-        text = body if isinstance(body, (bytes, type(None))) else json.dumps(body)
-        kind = {} if isinstance(body, (bytes, type(None))) else {"Content-Type": "application/json"}
-        try:
-            connection.request(method, "/api/v1" + path, text, {**kind, **self.fleet.auth, **(headers or {})})
-            answer = connection.getresponse()
-            content = answer.read()
-            return answer.status, json.loads(content) if content[:1] in (b"{", b"[") else content
-        finally:
-            connection.close()
+        return call((self.address, self.port), method, path, body, {**self.fleet.auth, **(headers or {})}, timeout)
 
 
 class Fleet:
@@ -189,24 +251,15 @@ class Fleet:
         return self.nodes[name]
 
     def log_in(self, node):
-        connection = http.client.HTTPConnection(node.address, node.port, timeout=20)
-        connection.request("POST", "/api/v1/session", json.dumps({"user": "anna", "password": PASSWORD}),
-                           {"Content-Type": "application/json"})
-        answer = connection.getresponse()
-        session = json.loads(answer.read())
-        cookie = answer.headers["Set-Cookie"].split(";")[0]
-        connection.close()
-        self.auth = {"Cookie": cookie, "X-CSRF-Token": session["csrf_token"]}
-        status, key = node.call("POST", "/keys", {"label": "test", "role": "admin", "may_fire": True})
-        assert status == 201, key
-        self.auth = {"Authorization": "Bearer " + key["key"]}
+        self.auth = log_in((node.address, node.port))
 
     def end(self):
         for node in self.nodes.values():
             if node.process.poll() is None:
                 node.signal(signal.SIGCONT)
                 node.kill()
-            node.log.close()
+            if node.machine:
+                node.machine.end()
             if self.namespaces:
                 node.host.kill()
                 node.host.wait()
@@ -216,6 +269,9 @@ class Fleet:
             pass  # The test left it dead.
         if self.namespaces:
             run("ip", "link", "del", "hub")
+        if os.environ.get("LEAFCUTTER_FLEET_KEEP"):
+            shutil.copytree(self.folder, os.environ["LEAFCUTTER_FLEET_KEEP"], dirs_exist_ok=True,
+                            ignore=shutil.ignore_patterns("pg", "blobs"))
         self.temporary.cleanup()
 
 
@@ -232,12 +288,3 @@ def wait(what, condition, seconds=40.0):
         time.sleep(0.05)
     raise AssertionError(f"waited in vain; it is {json.dumps(seen)[:1500] if not isinstance(seen, bytes) else seen}")
 
-
-def burnt_segments(log):
-    """How often each cut segment was burnt, in order of the log."""
-    pieces = []
-    for line in log.read_text().splitlines() if log.exists() else []:
-        piece = json.loads(line) if line.endswith("}") else {"s": 0}
-        if piece.get("s", 0) > 0:
-            pieces.append(tuple(round(piece[side], 3) for side in ("x0", "y0", "x1", "y1")))
-    return pieces

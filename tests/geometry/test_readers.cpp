@@ -261,6 +261,21 @@ TEST(StlReader, RefusesTextThatEndsEarlyOrStrays) {
     EXPECT_EQ(code_of("solid a\nfacet\nouter loop\nvertex 0 nan 0\n", "a.stl"), "non-finite");
 }
 
+TEST(Readers, AMeshWithoutAnEndingIsToldByItsBytes) {
+    const auto name = [](std::string_view given, std::string_view text) {
+        return mesh_file_name(given, test::bytes_of(text));
+    };
+    EXPECT_EQ(name("a.OFF", "v 0 0 0\n"), "a.OFF");  // What is said is not guessed.
+    EXPECT_EQ(name("my head", kTriangleObj), "my head.obj");
+    EXPECT_EQ(name("head 1.2", "# made by hand\n\nOFF\n3 1 0\n"), "head 1.2.off");
+    EXPECT_EQ(name("", "ply\nformat ascii 1.0\n"), ".ply");
+    EXPECT_EQ(name("a", kTriangleStl), "a.stl");
+    EXPECT_EQ(name("a", binary_stl(2, 2, "v")), "a.stl");
+    EXPECT_EQ(name("a", "hello"), "a");
+    EXPECT_EQ(name("a", ""), "a");
+    EXPECT_EQ(name("a", std::string(200'000, 'v')), "a");
+}
+
 TEST(Readers, LimitsAreKept) {
     const ReadLimits few_triangles{.max_triangles = 1};
     const auto code = [](std::string_view text, std::string_view name, const ReadLimits& limits) {

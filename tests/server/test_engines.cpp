@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include "server/fleet/duties.h"
 #include "server/store/blobs.h"
 #include "server/store/postgres/engine.h"
 #include "server/store/sql/columns.h"
@@ -112,6 +113,19 @@ TEST_P(EngineTest, ManyClaimersNeverShareAJob) {
     }
     EXPECT_EQ(count, kJobs);
     EXPECT_EQ(claimed.size(), static_cast<std::size_t>(kJobs));
+}
+
+TEST_P(EngineTest, PiecesThatAreWantedAgainCanBeClaimedApart) {
+    const JobRecord model = add();
+    NewJob pieces{"pieces", {"n.obj", 3, sha256_of("abc")}, "{}", model.id, R"({"pieces":["W1"]})"};
+    const JobRecord recut = store->jobs().add(pieces, std::nullopt).job;
+    EXPECT_EQ(recut.recut_of, model.id);
+    EXPECT_EQ(recut.recut_json, pieces.recut_json);
+    EXPECT_EQ(store->jobs().claim_recut()->id, recut.id);
+    EXPECT_FALSE(store->jobs().claim_recut());
+    store->jobs().requeue({recut.id});
+    EXPECT_EQ(store->jobs().claim()->id, model.id);
+    EXPECT_EQ(store->jobs().claim()->id, recut.id);  // Any worker takes it when it is next.
 }
 
 TEST_P(EngineTest, TheSameKeyGivesTheSameJob) {
@@ -364,14 +378,15 @@ TEST_P(EngineTest, CutsOfOneRequestAreAddedTogetherOrNotAtAll) {
     EXPECT_EQ(store->cuts().add(job.id, {{"one", {1}}, {"two", {2}}}).size(), 2U);
 }
 
+constexpr std::chrono::hours kHour{1};
+
 TEST_P(EngineTest, OldJobsGoAndThoseWithSomethingLeftToDoStay) {
     const JobRecord failed = add("failed");
     store->jobs().claim();
     store->jobs().fail({failed.id}, {"bad-file", "x", "y"});
     const JobRecord waiting = add("waiting");
-    constexpr std::int64_t kNow = INT64_MAX;
-    EXPECT_EQ(store->jobs().remove_finished(0, 10), 0);
-    EXPECT_EQ(store->jobs().remove_finished(kNow, 10), 1);
+    EXPECT_EQ(store->jobs().remove_finished(kHour, 10), 0);
+    EXPECT_EQ(store->jobs().remove_finished(-kHour, 10), 1);
     EXPECT_FALSE(store->jobs().find(failed.id));
     EXPECT_TRUE(store->jobs().find(waiting.id));
 }
@@ -386,11 +401,11 @@ TEST_P(EngineTest, APackageThatIsLetGoLeavesItsJob) {
     sheet.program_sha256 = sha256_of("abc");
     result.sheets.push_back(sheet);
     store->jobs().finish({job.id}, result);
-    EXPECT_EQ(store->jobs().drop_packages(INT64_MAX, 10), 0);  // It is ready, not cut yet.
+    EXPECT_EQ(store->jobs().drop_packages(-kHour, 10), 0);  // It is ready, not cut yet.
     const CutRecord cut = armed(store->cuts().add(job.id, {{"sim", {}}}).front());
     store->cuts().begin_sheet(cut);
     store->cuts().finish_sheet(store->cuts().find(cut.id).value(), {});
-    EXPECT_EQ(store->jobs().drop_packages(INT64_MAX, 10), 1);
+    EXPECT_EQ(store->jobs().drop_packages(-kHour, 10), 1);
     EXPECT_TRUE(store->jobs().artifacts(job.id).empty());
     EXPECT_EQ(store->jobs().find(job.id)->state, JobState::Done);
 }
@@ -400,8 +415,8 @@ TEST_P(EngineTest, OldEventsGoFromTheFrontAndNumbersAreNeverGivenTwice) {
     add();
     const std::int64_t last = store->events().last_seq();
     EXPECT_EQ(store->events().first_seq(), 1);
-    EXPECT_EQ(store->events().forget(0, 100), 0);
-    EXPECT_EQ(store->events().forget(INT64_MAX, 100), 1);  // The newest one stays.
+    EXPECT_EQ(store->events().forget(kHour, 100), 0);
+    EXPECT_EQ(store->events().forget(-kHour, 100), 1);  // The newest one stays.
     EXPECT_EQ(store->events().first_seq(), last);
     reopen();
     add();
@@ -509,6 +524,50 @@ TEST_P(FleetTest, AMachineHangsOnOneStationAtATime) {
     hall->fleet().let_go_of_machines();
     ASSERT_EQ(copy->fleet().hold_machines().size(), 1U);
     EXPECT_GT(copy->fleet().machine_leases().front().fence, fence);
+}
+
+TEST_P(FleetTest, ADutyIsOneNodesUntilItEnds) {
+    const auto one = node("one", kLong);
+    const auto two = node("two", kLong);
+    const std::vector<std::string> duties{"housekeeping", "webhook http://a/"};
+    EXPECT_EQ(one->fleet().hold_duties({"housekeeping"}).size(), 1U);
+    EXPECT_EQ(two->fleet().hold_duties(duties), std::vector<std::string>{duties[1]});
+    EXPECT_EQ(one->fleet().hold_duties({"housekeeping"}).size(), 1U);  // Prolonged.
+    ASSERT_EQ(store->fleet().duty_leases().size(), 2U);
+    EXPECT_EQ(store->fleet().duty_leases().front().device, "housekeeping");
+    EXPECT_EQ(store->fleet().duty_leases().front().owner, "one");
+    EXPECT_TRUE(store->fleet().machine_leases().empty());
+    one->fleet().let_go_of_machines();
+    EXPECT_EQ(two->fleet().hold_duties(duties), duties);
+}
+
+TEST_P(FleetTest, OfTwoNodesWithADutyOneHasIt) {
+    const auto one = node("one", kLong);
+    const auto two = node("two", kLong);
+    Duties first(kLong);
+    Duties second(kLong);
+    first.renew(one->fleet());  // Nothing is wanted yet.
+    EXPECT_FALSE(first.has("housekeeping"));
+    first.want("housekeeping");
+    second.want("housekeeping");
+    first.renew(one->fleet());
+    second.renew(two->fleet());
+    EXPECT_TRUE(first.has("housekeeping"));
+    EXPECT_FALSE(second.has("housekeeping"));
+    EXPECT_TRUE(Duties(std::chrono::milliseconds(0)).has("housekeeping"));  // A daemon alone.
+    Duties stale(kOver);
+    stale.want("housekeeping");
+    stale.renew(one->fleet());
+    let_leases_end();
+    EXPECT_FALSE(stale.has("housekeeping"));  // Its own clock tells it, without the database.
+}
+
+TEST_P(EngineTest, ASettingIsReplacedOnlyWhereItIsAsExpected) {
+    EXPECT_FALSE(store->settings().replace("place", "1", "2"));
+    store->settings().put("place", "1");
+    EXPECT_TRUE(store->settings().replace("place", "1", "2"));
+    EXPECT_FALSE(store->settings().replace("place", "1", "3"));
+    EXPECT_EQ(store->settings().get("place"), "2");
 }
 
 TEST_P(FleetTest, WithoutItsLeaseAStationBeginsNothing) {

@@ -41,6 +41,15 @@ json loading(App& app, const CutRecord& cut) {
     return details;
 }
 
+// The program whose outline the machine went round last.
+std::string framed_on(App& app, const std::string& device) {
+    if (const auto runner = app.fleet().find(device)) {
+        return runner->framed();
+    }
+    const auto elsewhere = app.remote().find("device", device);
+    return elsewhere ? elsewhere->value("framed", "") : "";
+}
+
 // Up to the call that lets the beam loose.
 json before_fire(App& app, const CutRecord& cut, const char* call) {
     json steps = json::array();
@@ -50,9 +59,8 @@ json before_fire(App& app, const CutRecord& cut, const char* call) {
     }
     steps.push_back(cut.is_rest() ? step("keep-sheet", Needed::Yes, {{"sheet", cut.sheet()}})
                                   : step("load-sheet", Needed::Yes, loading(app, cut)));
-    const auto runner = app.fleet().find(cut.device);
-    const bool framed = runner && runner->has_framed(cut.program_sha256);
-    steps.push_back(step("frame", Needed::No, {{"done", framed}}));
+    steps.push_back(
+        step("frame", Needed::No, {{"done", framed_on(app, cut.device) == cut.program_sha256}}));
     steps.push_back(step("bed-clear", Needed::Yes));
     steps.push_back(step(call, Needed::Yes, {{"done", false}}));
     return steps;

@@ -79,6 +79,15 @@ json leases_json(App& app) {
     return leases;
 }
 
+json duties_json(App& app) {
+    json duties = json::array();
+    for (const MachineLease& lease : app.store().fleet.duty_leases()) {
+        duties.push_back(
+            {{"duty", lease.device}, {"node", lease.owner}, {"held", lease.left_ms > 0}});
+    }
+    return duties;
+}
+
 json claims_json(App& app) {
     constexpr int kMost = 200;
     JobQuery query;
@@ -125,6 +134,7 @@ Response show_fleet(App& app, Request&) {
                               {"lease_s", nullptr},
                               {"nodes", json::array()},
                               {"machine_leases", json::array()},
+                              {"duties", json::array()},
                               {"claims", json::array()}});
     }
     json nodes = json::array();
@@ -136,6 +146,7 @@ Response show_fleet(App& app, Request&) {
                           {"lease_s", static_cast<double>(app.self()->lease.count()) / 1000.0},
                           {"nodes", std::move(nodes)},
                           {"machine_leases", leases_json(app)},
+                          {"duties", duties_json(app)},
                           {"claims", claims_json(app)}});
 }
 

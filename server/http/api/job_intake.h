@@ -24,11 +24,10 @@ SourceFile store_mesh(App& app, MultipartReader& parts, const PartHead& head);
 // geometry::Error, KeyReused.
 AddedJob take_job(App& app, const Request& request, NewJob job);
 
-// A job that is computed already; `recut_of` as JobStore::add_ready takes it. Throws HttpProblem
-// (507), BlobWriteFailed.
-Response take_ready_job(App& app,
-                        NewJob job,
-                        const std::string& recut_of,
-                        const ComputeOutput& output);
+// The same for what is checked already; 201.
+Response take_checked_job(App& app, const Request& request, NewJob job);
+
+// A job that is computed already. Throws HttpProblem (507), BlobWriteFailed.
+Response take_ready_job(App& app, NewJob job, const ComputeOutput& output);
 
 }  // namespace leafcutter::server

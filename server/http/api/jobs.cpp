@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "geometry/io/read_mesh.h"
 #include "server/app.h"
 #include "server/http/api/handlers.h"
 #include "server/http/api/job_intake.h"
@@ -58,7 +59,7 @@ NewJob job_from_json(App& app, const Request& request) {
     }
     job.file.bytes = *bytes;
     job.name = text_field_or(body, "name", "");
-    job.file.name = text_field_or(body, "file_name", job.name);
+    job.file.name = text_field_or(body, "file_name", "");
     job.params_json = dump_json(body.value("params", json::object()));
     return job;
 }
@@ -77,16 +78,42 @@ std::optional<IdempotencyKey> key_of(const Request& request, const NewJob& job) 
     if (!key) {
         return std::nullopt;
     }
-    return IdempotencyKey{
-        fmt::format("{}/{}", request.caller.name, *key),
-        sha256_of(fmt::format("{}\n{}\n{}", job.file.sha256, job.name, job.params_json))};
+    std::string whole = fmt::format("{}\n{}\n{}", job.file.sha256, job.name, job.params_json);
+    if (!job.recut_of.empty()) {
+        whole += fmt::format("\n{}\n{}", job.recut_of, job.recut_json);
+    }
+    return IdempotencyKey{fmt::format("{}/{}", request.caller.name, *key), sha256_of(whole)};
+}
+
+// With an ending that readers know, where a client gave none.
+std::string mesh_file_name(App& app, const NewJob& job) {
+    const std::string& name = job.file.name.empty() ? job.name : job.file.name;
+    if (geometry::is_mesh_name(name)) {
+        return name;
+    }
+    return geometry::mesh_file_name(name.empty() ? "mesh" : name,
+                                    app.store().blobs.map(job.file.sha256)->bytes());
+}
+
+AddedJob add_job(App& app, const Request& request, NewJob job) {
+    job.name = job.name.empty() ? job.file.name : job.name;
+    job.name.resize(std::min(job.name.size(), kLongestName));
+    app.store().blobs.share(job.file.sha256);  // An accepted job outlives this host.
+    const AddedJob added = app.store().jobs.add(job, key_of(request, job));
+    if (!added.replayed) {
+        app.compute().wake();
+    }
+    return added;
+}
+
+Response created(App& app, const JobRecord& job) {
+    Response response = json_response(job_json(app, job), 201);
+    response.headers["Location"] = "/api/v1/jobs/" + job.id;
+    return response;
 }
 
 Response accept(App& app, const Request& request, NewJob job) {
-    const AddedJob added = take_job(app, request, std::move(job));
-    Response response = json_response(job_json(app, added.job), 201);
-    response.headers["Location"] = "/api/v1/jobs/" + added.job.id;
-    return response;
+    return created(app, take_job(app, request, std::move(job)).job);
 }
 
 }  // namespace
@@ -108,32 +135,23 @@ SourceFile store_mesh(App& app, MultipartReader& parts, const PartHead& head) {
 }
 
 AddedJob take_job(App& app, const Request& request, NewJob job) {
+    job.file.name = mesh_file_name(app, job);
     check_params(app, job);
-    job.name = job.name.empty() ? job.file.name : job.name;
-    job.name.resize(std::min(job.name.size(), kLongestName));
-    app.store().blobs.share(job.file.sha256);  // An accepted job outlives this host.
-    const AddedJob added = app.store().jobs.add(job, key_of(request, job));
-    if (!added.replayed) {
-        app.compute().wake();
-    }
-    return added;
+    return add_job(app, request, std::move(job));
 }
 
-Response take_ready_job(App& app,
-                        NewJob job,
-                        const std::string& recut_of,
-                        const ComputeOutput& output) {
+Response take_checked_job(App& app, const Request& request, NewJob job) {
+    return created(app, add_job(app, request, std::move(job)).job);
+}
+
+Response take_ready_job(App& app, NewJob job, const ComputeOutput& output) {
     std::int64_t bytes = 0;
     for (const fab::PackageFile& file : output.package.files) {
         bytes += static_cast<std::int64_t>(file.bytes.size());
     }
     check_room(app, bytes);
     job.name.resize(std::min(job.name.size(), kLongestName));
-    const JobRecord made =
-        app.store().jobs.add_ready(job, recut_of, stored_result(app.store().blobs, output));
-    Response response = json_response(job_json(app, made), 201);
-    response.headers["Location"] = "/api/v1/jobs/" + made.id;
-    return response;
+    return created(app, app.store().jobs.add_ready(job, stored_result(app.store().blobs, output)));
 }
 
 Response create_job(App& app, Request& request) {

@@ -1,11 +1,9 @@
 // As much of OctoPrint's API as tools need to send a file: they know it, they don't know us.
 
-#include <algorithm>
-#include <array>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "geometry/io/read_mesh.h"
 #include "server/app.h"
 #include "server/http/api/handlers.h"
 #include "server/http/api/job_intake.h"
@@ -19,16 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-bool is_mesh_name(const std::string& name) {
-    constexpr std::array<std::string_view, 4> kEndings{".stl", ".obj", ".off", ".ply"};
-    std::string lower = name;
-    std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
-    return std::any_of(kEndings.begin(), kEndings.end(),
-                       [&lower](std::string_view ending) { return lower.ends_with(ending); });
-}
-
 NewJob job_in_form(App& app, const Request& request) {
     check_room(app, request.body.bytes);
     NewJob job;
@@ -38,7 +26,7 @@ NewJob job_in_form(App& app, const Request& request) {
         if (part->name != "file" || part->file_name.empty()) {
             continue;  // print, select, path, userdata: nothing here starts a machine.
         }
-        if (!is_mesh_name(part->file_name)) {
+        if (!geometry::is_mesh_name(part->file_name)) {
             throw HttpProblem(415, "not-a-mesh",
                               "send an STL, OBJ, OFF or PLY mesh: programs come out of here, they "
                               "don't go in");

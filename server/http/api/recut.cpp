@@ -1,4 +1,4 @@
-// Single pieces of a finished job again: a new job, ready at once.
+// Single pieces of a finished job again: a new job.
 
 #include <algorithm>
 #include <string>
@@ -63,8 +63,10 @@ Response recut_job(App& app, Request& request) {
     call.wishes_json = dump_json(body);
     call.material_records = texts_of(app.store().materials.list());
     call.read = [&app, &job](const std::string& path) { return artifact_text(app, job.id, path); };
-    const ComputeOutput output = app.parts().recut(call);
-    return take_ready_job(app, {name_of(job, body), job.file, job.params_json}, job.id, output);
+    app.parts().check_recut(call);
+    return take_checked_job(
+        app, request,
+        {name_of(job, body), job.file, job.params_json, job.id, std::move(call.wishes_json)});
 }
 
 }  // namespace leafcutter::server

@@ -29,7 +29,7 @@ Response create_test_card(App& app, Request& request) {
     const BlobId wished = app.store().blobs.put(text);
     job.file = {"test-card.json", wished.bytes, wished.sha256};
     job.params_json = "{}";
-    return take_ready_job(app, std::move(job), "", output);
+    return take_ready_job(app, std::move(job), output);
 }
 
 }  // namespace leafcutter::server

@@ -320,6 +320,7 @@ std::optional<std::string> passing_view(App& app, const std::string& type, const
     }
     json view = device_json(*runner);
     view["ready"] = runner->is_ready();
+    view["framed"] = runner->framed();
     view["connected"] = runner->status().state != drivers::MachineState::Disconnected;
     json& console = view["console"];
     constexpr std::size_t kFewLines = 20;

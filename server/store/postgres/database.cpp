@@ -133,17 +133,16 @@ void PgDatabase::write_soon(const std::string& key, const Work& work) {
     }
 }
 
-void PgDatabase::pass_on(const std::string& text) {
+void PgDatabase::pass_on(const std::string& key, const std::string& text) {
     constexpr std::size_t kLongest = 7900;  // A notice's payload ends at 8000 bytes.
     if (text.size() > kLongest) {
         return;
     }
-    write_soon(fmt::format("passing {:x}", std::hash<std::string>{}(text)),
-               [text](SqlSession& session) {
-                   SqlStatement notify(session, "SELECT pg_notify('leafcutter_passing', ?)");
-                   notify.bind(1, text);
-                   notify.step();
-               });
+    write_soon(fmt::format("passing {}", key), [text](SqlSession& session) {
+        SqlStatement notify(session, "SELECT pg_notify('leafcutter_passing', ?)");
+        notify.bind(1, text);
+        notify.step();
+    });
 }
 
 void PgDatabase::commit(const CommitQueue::Group& group) {

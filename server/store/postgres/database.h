@@ -40,7 +40,7 @@ public:
     void read(const Work& work) const override;
 
     // Tells every process that listens; lost where nobody does.
-    void pass_on(const std::string& text);
+    void pass_on(const std::string& key, const std::string& text);
 
     // Empty: the server answers.
     std::string trouble() const;

@@ -23,7 +23,9 @@ public:
     const LatencyHistogram* commit_latency() const override { return &database_->commit_latency(); }
     std::string trouble() const override { return database_->trouble(); }
     SqlDatabase& rows() override { return *database_; }
-    void pass_on(const std::string& text) override { database_->pass_on(text); }
+    void pass_on(const std::string& key, const std::string& text) override {
+        database_->pass_on(key, text);
+    }
 
     // The server looks after its own files: see its data checksums and amcheck.
     std::string check() const override { return {}; }

@@ -22,7 +22,7 @@ constexpr std::array kSqlTables{
              "updated_ms:number file_name:text file_bytes:number file_sha256:text params:text "
              "attempt:number error_kind:text error_code:text error_detail:text summary:text "
              "recut_of:text priority:number place:number retries:number retry_cause:text "
-             "owner:text fence:number lease_until_ms:number",
+             "owner:text fence:number lease_until_ms:number recut:text",
              "ordinal"},
     SqlTable{"artifact", "job, path",
              "job:text position:number path:text bytes:number sha256:text media_type:text", ""},

@@ -22,7 +22,7 @@ std::int64_t SqlEventLog::last_seq() const {
     return last;
 }
 
-int SqlEventLog::forget(std::int64_t before_ms, int limit) {
+int SqlEventLog::forget(std::chrono::milliseconds age, int limit) {
     int forgotten = 0;
     database_.write([&](SqlSession& session) {
         // Clocks jump: what goes is a beginning of the log, up to the first young one.
@@ -31,7 +31,7 @@ int SqlEventLog::forget(std::int64_t before_ms, int limit) {
             "DELETE FROM event WHERE seq < coalesce((SELECT min(seq) FROM event WHERE "
             "at_ms >= ?1), (SELECT max(seq) FROM event)) AND seq < (SELECT min(seq) FROM event) "
             "+ ?2");
-        erase.bind(1, before_ms);
+        erase.bind(1, session.now_ms() - age.count());
         erase.bind(2, limit);
         forgotten = erase.run();
     });

@@ -19,7 +19,7 @@ public:
     std::int64_t first_seq() const override;
     std::int64_t last_seq() const override;
     std::vector<EventRecord> after(std::int64_t seq, int limit) const override;
-    int forget(std::int64_t before_ms, int limit) override;
+    int forget(std::chrono::milliseconds age, int limit) override;
 
 private:
     SqlDatabase& database_;

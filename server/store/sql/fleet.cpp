@@ -18,6 +18,9 @@ namespace {
 constexpr std::array<std::pair<NodeMode, std::string_view>, 3> kModes{
     {{NodeMode::Active, "active"}, {NodeMode::Paused, "paused"}, {NodeMode::Draining, "draining"}}};
 
+// In the table of machines' leases; no machine's id has a colon.
+constexpr std::string_view kDutyPrefix = "duty:";
+
 void tell_node(SqlSession& session, const std::string& id, std::string note) {
     EventRecord event;
     event.type = "node";
@@ -274,15 +277,45 @@ void SqlFleetStore::let_go_of_machines() {
 }
 
 std::vector<MachineLease> SqlFleetStore::machine_leases() const {
+    return leases(/*of_duties=*/false);
+}
+
+std::vector<std::string> SqlFleetStore::hold_duties(const std::vector<std::string>& duties) {
+    std::vector<std::string> held;
+    database_.write(
+        [&](SqlSession& session) {
+            held.clear();
+            for (const std::string& duty : duties) {
+                const std::string name = fmt::format("{}{}", kDutyPrefix, duty);
+                hold(session, scope_, name);
+                if (held_fence(session, scope_, name)) {
+                    held.push_back(duty);
+                }
+            }
+        },
+        WriteOrder::Beside);
+    return held;
+}
+
+std::vector<MachineLease> SqlFleetStore::duty_leases() const {
+    return leases(/*of_duties=*/true);
+}
+
+std::vector<MachineLease> SqlFleetStore::leases(bool of_duties) const {
     std::vector<MachineLease> leases;
-    database_.read([&leases](SqlSession& session) {
+    database_.read([&leases, of_duties](SqlSession& session) {
         leases.clear();
         SqlStatement query(session,
                            "SELECT device, owner, fence, lease_until_ms FROM machine_lease "
                            "ORDER BY device");
         while (query.step()) {
-            leases.push_back({query.column(0).text(), query.column(1).text(),
-                              query.column(2).int64(), query.column(3).int64() - session.now_ms()});
+            const std::string name = query.column(0).text();
+            const bool is_duty = name.starts_with(kDutyPrefix);
+            if (is_duty == of_duties) {
+                leases.push_back({is_duty ? name.substr(kDutyPrefix.size()) : name,
+                                  query.column(1).text(), query.column(2).int64(),
+                                  query.column(3).int64() - session.now_ms()});
+            }
         }
     });
     return leases;

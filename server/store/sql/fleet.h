@@ -23,9 +23,13 @@ public:
     std::vector<MachineLease> hold_machines() override;
     void let_go_of_machines() override;
     std::vector<MachineLease> machine_leases() const override;
+    std::vector<std::string> hold_duties(const std::vector<std::string>& duties) override;
+    std::vector<MachineLease> duty_leases() const override;
     Reaped reap() override;
 
 private:
+    std::vector<MachineLease> leases(bool of_duties) const;
+
     SqlDatabase& database_;
     const NodeScope scope_;
 };

@@ -16,6 +16,8 @@ namespace leafcutter::server {
 namespace {
 
 constexpr const char* kInOrder = "WHERE state = 'queued' ORDER BY priority DESC, place, ordinal ";
+constexpr const char* kRecutsInOrder =
+    "WHERE state = 'queued' AND recut <> '' ORDER BY priority DESC, place, ordinal ";
 constexpr const char* kPause = "queue.paused";
 
 struct Place {
@@ -172,6 +174,14 @@ QueueCounts SqlJobStore::queue_counts() const {
 }
 
 std::optional<JobRecord> SqlJobStore::claim() {
+    return claim_first(kInOrder);
+}
+
+std::optional<JobRecord> SqlJobStore::claim_recut() {
+    return claim_first(kRecutsInOrder);
+}
+
+std::optional<JobRecord> SqlJobStore::claim_first(const char* among) {
     std::optional<JobRecord> job;
     database_.write(
         [&](SqlSession& session) {
@@ -179,7 +189,7 @@ std::optional<JobRecord> SqlJobStore::claim() {
             if (setting(session, kPause) || !is_active(session, scope_)) {
                 return;
             }
-            SqlStatement query(session, fmt::format("SELECT id FROM job {}LIMIT 1 {}", kInOrder,
+            SqlStatement query(session, fmt::format("SELECT id FROM job {}LIMIT 1 {}", among,
                                                     session.for_update_of_free_rows()));
             if (!query.step()) {
                 return;

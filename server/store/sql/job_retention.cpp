@@ -16,12 +16,13 @@ constexpr const char* kEnded =
     "AND NOT EXISTS(SELECT 1 FROM cut WHERE cut.job = job.id AND "
     "cut.state NOT IN ('done','aborted','failed')) ";
 
+// The database's clock decides: a node's own may be wrong.
 std::vector<std::string> ended_before(SqlSession& session,
                                       const std::string& more,
-                                      std::int64_t before_ms,
+                                      std::chrono::milliseconds age,
                                       int limit) {
     SqlStatement query(session, kEnded + more + "ORDER BY updated_ms LIMIT ?");
-    query.bind(1, before_ms);
+    query.bind(1, session.now_ms() - age.count());
     query.bind(2, limit);
     std::vector<std::string> ids;
     while (query.step()) {
@@ -32,10 +33,10 @@ std::vector<std::string> ended_before(SqlSession& session,
 
 }  // namespace
 
-int SqlJobStore::remove_finished(std::int64_t before_ms, int limit) {
+int SqlJobStore::remove_finished(std::chrono::milliseconds age, int limit) {
     int removed = 0;
     database_.write([&](SqlSession& session) {
-        for (const std::string& id : ended_before(session, "", before_ms, limit)) {
+        for (const std::string& id : ended_before(session, "", age, limit)) {
             remove_job(session, id);
             ++removed;
         }
@@ -43,13 +44,13 @@ int SqlJobStore::remove_finished(std::int64_t before_ms, int limit) {
     return removed;
 }
 
-int SqlJobStore::drop_packages(std::int64_t before_ms, int limit) {
+int SqlJobStore::drop_packages(std::chrono::milliseconds age, int limit) {
     int dropped = 0;
     database_.write([&](SqlSession& session) {
         SqlStatement erase(session, "DELETE FROM artifact WHERE job = ?");
         const std::string has_one =
             "AND EXISTS(SELECT 1 FROM artifact WHERE artifact.job = job.id) ";
-        for (const std::string& id : ended_before(session, has_one, before_ms, limit)) {
+        for (const std::string& id : ended_before(session, has_one, age, limit)) {
             erase.bind(1, id);
             erase.run();
             erase.reset();

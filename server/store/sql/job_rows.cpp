@@ -14,7 +14,7 @@ namespace leafcutter::server {
 const char* const kSelectJob =
     "SELECT ordinal, id, name, state, version, created_ms, updated_ms, file_name, file_bytes, "
     "file_sha256, params, attempt, error_kind, error_code, error_detail, summary, recut_of, "
-    "priority, retries, retry_cause, owner, fence, lease_until_ms FROM job ";
+    "priority, retries, retry_cause, owner, fence, lease_until_ms, recut FROM job ";
 
 JobRecord job_from(SqlStatement& row) {
     JobRecord job;
@@ -41,6 +41,7 @@ JobRecord job_from(SqlStatement& row) {
     job.owner = row.column(20).text();
     job.fence = row.column(21).int64();
     job.lease_until_ms = row.column(22).int64();
+    job.recut_json = row.column(23).text();
     return job;
 }
 
@@ -108,10 +109,10 @@ void tell_queue(SqlSession& session, std::string note) {
 
 std::string insert_job(SqlSession& session, const NewJob& job, JobState state) {
     std::string id = new_id("j_");
-    SqlStatement insert(
-        session,
-        "INSERT INTO job(id, name, created_ms, updated_ms, file_name, "
-        "file_bytes, file_sha256, params, state) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    SqlStatement insert(session,
+                        "INSERT INTO job(id, name, created_ms, updated_ms, file_name, "
+                        "file_bytes, file_sha256, params, state, recut_of, recut) "
+                        "VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     const std::int64_t now = session.now_ms();
     insert.bind(1, id);
     insert.bind(2, job.name);
@@ -122,6 +123,8 @@ std::string insert_job(SqlSession& session, const NewJob& job, JobState state) {
     insert.bind(7, job.file.sha256);
     insert.bind(8, job.params_json);
     insert.bind(9, std::string(to_string(state)));
+    insert.bind(10, job.recut_of);
+    insert.bind(11, job.recut_json);
     insert.run();
     SqlStatement place(session, "UPDATE job SET place = ordinal * ? WHERE id = ?");
     place.bind(1, kPlaceGap);

@@ -61,16 +61,10 @@ AddedJob SqlJobStore::add(const NewJob& job, const std::optional<IdempotencyKey>
     return added;
 }
 
-JobRecord SqlJobStore::add_ready(const NewJob& job,
-                                 const std::string& recut_of,
-                                 const ComputedJob& result) {
+JobRecord SqlJobStore::add_ready(const NewJob& job, const ComputedJob& result) {
     JobRecord added;
     database_.write([&](SqlSession& session) {
         const std::string id = insert_job(session, job, JobState::Ready);
-        SqlStatement update(session, "UPDATE job SET recut_of = ? WHERE id = ?");
-        update.bind(1, recut_of);
-        update.bind(2, id);
-        update.run();
         store_result(session, id, result);
         added = find_job(session, id).value();
     });

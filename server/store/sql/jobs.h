@@ -15,14 +15,13 @@ public:
         : database_(database), scope_(scope) {}
 
     AddedJob add(const NewJob& job, const std::optional<IdempotencyKey>& key) override;
-    JobRecord add_ready(const NewJob& job,
-                        const std::string& recut_of,
-                        const ComputedJob& result) override;
+    JobRecord add_ready(const NewJob& job, const ComputedJob& result) override;
     std::optional<JobRecord> find(const std::string& id) const override;
     std::vector<JobRecord> list(const JobQuery& query) const override;
     std::vector<JobRecord> queue(int limit) const override;
     QueueCounts queue_counts() const override;
     std::optional<JobRecord> claim() override;
+    std::optional<JobRecord> claim_recut() override;
     void pause_queue(const std::string& reason) override;
     void resume_queue() override;
     std::optional<std::string> queue_pause() const override;
@@ -40,12 +39,14 @@ public:
     std::optional<ArtifactRecord> artifact(const std::string& job,
                                            const std::string& path) const override;
     bool refers_to_blob(const std::string& sha256) const override;
-    int remove_finished(std::int64_t before_ms, int limit) override;
-    int drop_packages(std::int64_t before_ms, int limit) override;
+    int remove_finished(std::chrono::milliseconds age, int limit) override;
+    int drop_packages(std::chrono::milliseconds age, int limit) override;
     std::int64_t count(JobState state) const override;
     void recover() override;
 
 private:
+    std::optional<JobRecord> claim_first(const char* among);
+
     SqlDatabase& database_;
     const NodeScope scope_;
 };

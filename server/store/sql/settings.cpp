@@ -36,6 +36,20 @@ void SqlSettings::put(const std::string& key, const std::string& json) {
     database_.write([&](SqlSession& session) { set_setting(session, key, json); });
 }
 
+bool SqlSettings::replace(const std::string& key,
+                          const std::string& expected,
+                          const std::string& json) {
+    bool replaced = false;
+    database_.write([&](SqlSession& session) {
+        SqlStatement update(session, "UPDATE setting SET value = ? WHERE key = ? AND value = ?");
+        update.bind(1, json);
+        update.bind(2, key);
+        update.bind(3, expected);
+        replaced = update.run() > 0;
+    });
+    return replaced;
+}
+
 void SqlSettings::remove(const std::string& key) {
     database_.write([&](SqlSession& session) { forget_setting(session, key); });
 }

@@ -14,6 +14,9 @@ public:
 
     std::optional<std::string> get(const std::string& key) const override;
     void put(const std::string& key, const std::string& json) override;
+    bool replace(const std::string& key,
+                 const std::string& expected,
+                 const std::string& json) override;
     void remove(const std::string& key) override;
 
 private:

@@ -31,7 +31,8 @@ public:
     const LatencyHistogram* commit_latency() const override { return database_->commit_latency(); }
     std::string trouble() const override { return database_->trouble(); }
     SqlDatabase& rows() override { return *database_; }
-    void pass_on(const std::string& /*text*/) override {}  // There is nobody else.
+    void pass_on(const std::string& /*key*/, const std::string& /*text*/) override {
+    }  // There is nobody else.
     std::string check() const override;
     void back_up_to(const fs::path& file) const override;
 

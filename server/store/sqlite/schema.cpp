@@ -186,6 +186,10 @@ CREATE TABLE node(
     facts TEXT NOT NULL DEFAULT '{}',
     started_ms INTEGER NOT NULL,
     seen_ms INTEGER NOT NULL) WITHOUT ROWID;
+)sql",
+    R"sql(
+ALTER TABLE job ADD COLUMN recut TEXT NOT NULL DEFAULT '';
+CREATE INDEX job_recut ON job(priority DESC, place, ordinal) WHERE state = 'queued' AND recut <> '';
 )sql"};
 
 // Durability first: FULL syncs every commit, and only the writer's own checkpoints touch the file.

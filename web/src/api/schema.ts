@@ -365,6 +365,11 @@ export type Fleet = {
     readonly held: boolean;
     readonly left_s: number;
   })[];
+  readonly duties: readonly ({
+    readonly duty: string;
+    readonly node: string;
+    readonly held: boolean;
+  })[];
   readonly claims: readonly ({
     readonly job: string;
     readonly worker: string;
