@@ -20,6 +20,11 @@ drivers::DeviceStatus DeviceRunner::status() const {
     return nothing;
 }
 
+std::uint64_t DeviceRunner::lines_heard() const {
+    const std::scoped_lock lock(mutex_);
+    return lines_heard_;
+}
+
 std::vector<std::string> DeviceRunner::console_lines() const {
     const std::scoped_lock lock(mutex_);
     return {lines_.begin(), lines_.end()};
@@ -210,6 +215,7 @@ void DeviceRunner::keep_line(std::string_view line) {
     }
     const std::scoped_lock lock(mutex_);
     lines_.emplace_back(line);
+    ++lines_heard_;
     if (lines_.size() > kKept) {
         lines_.pop_front();
     }

@@ -164,8 +164,8 @@ void DeviceRunner::publish() {
     }
     const std::optional<std::string> cut = current_cut();
     const std::string freedom = fmt::format("{} {}", is_ready(), cut.value_or(""));
-    const std::string seen =
-        fmt::format("{} {} {}", fingerprint(status()), freedom, progress_.lines_acknowledged);
+    const std::string seen = fmt::format("{} {} {} {}", fingerprint(status()), freedom,
+                                         progress_.lines_acknowledged, lines_heard());
     const bool queue_changed = queue_changed_.exchange(false);
     if (seen == published_ && !queue_changed) {
         return;

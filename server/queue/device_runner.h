@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -129,6 +130,7 @@ private:
     void start_program(const CutRecord& cut, const std::string& program);
     void start_frame(const std::string& program);
     void publish();
+    std::uint64_t lines_heard() const;
     void wind_down();
 
     std::shared_ptr<drivers::Device> device() const;
@@ -160,6 +162,7 @@ private:
     std::string framed_;   // The program that frame_program_, or the last one, was made of.
     std::string message_;  // Why there is no link.
     std::deque<std::string> lines_;
+    std::uint64_t lines_heard_ = 0;  // Ever: those that left the console count, too.
 
     // Of the runner's thread alone.
     std::optional<drivers::JobProgress> lost_;  // Of the cut whose link is gone, not yet on disk.

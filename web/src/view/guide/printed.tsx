@@ -15,7 +15,7 @@ import { stepTitle, stepWords } from './words.ts';
 const kPicture = { width: 560, height: 380 };
 // Paper is white whatever the screen's scheme is.
 const kInk: Palette = {
-  weft: '#e0a578', warp: '#86b3c9', surface: '#eeeeee', line: '#777777', mark: '#ffb400', critical: '#111111',
+  weft: '#e0a578', warp: '#86b3c9', surface: '#eeeeee', line: '#777777', ghost: '#777777', mark: '#ffb400', critical: '#111111',
 };
 
 function PrintedStep(props: { readonly step: Step; readonly number: number }) {

@@ -179,7 +179,7 @@ export function createGuideScene(canvas: HTMLCanvasElement, content: GuideConten
       weft.laid.material.color.set(palette.weft);
       warp.laid.material.color.set(palette.warp);
       for (const part of [weft, warp]) part.now.material.color.set(palette.mark);
-      model.edges.material.color.set(palette.line);
+      model.edges.material.color.set(palette.ghost);
       model.arrow.material.color.set(palette.critical);
       model.spot.material.color.set(palette.critical);
       stage.draw();

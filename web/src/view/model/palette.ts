@@ -5,6 +5,7 @@ export interface Palette {
   readonly warp: string;
   readonly surface: string;
   readonly line: string;
+  readonly ghost: string; // Of what is not woven yet.
   readonly mark: string;
   readonly critical: string;
 }
@@ -17,6 +18,7 @@ export function palette(element: Element): Palette {
     warp: colour('--warp'),
     surface: colour('--model-surface'),
     line: colour('--model-line'),
+    ghost: colour('--model-ghost'),
     mark: colour('--mark'),
     critical: colour('--critical'),
   };
