@@ -82,6 +82,8 @@ class Targets:
         twice = []
         for piece in burnt_pieces(log):
             at = (piece["x1"], piece["y1"])
+            if math.dist((piece["x0"], piece["y0"]), at) < self.NEAR_MM:
+                continue  # A motion was written in two, and its last crumb starts where it has counted as there.
             found = self.near(at)
             left = [entry for entry in found if entry[1] > 0]
             if left:
