@@ -86,8 +86,8 @@ class Targets:
                 continue  # A motion was written in two, and its last crumb starts where it has counted as there.
             found = self.near(at)
             left = [entry for entry in found if entry[1] > 0]
-            if left:
-                left[0][1] -= 1
+            if left:  # Ends of different jobs may lie as near as that to each other.
+                min(left, key=lambda entry: math.dist(entry[0], at))[1] -= 1
             elif found:  # Otherwise it was stopped there, in the middle of a line.
                 twice.append(at)
         return twice
