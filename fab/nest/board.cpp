@@ -136,6 +136,12 @@ void Board::move(std::size_t item, const Position& to) {
     put(item);
 }
 
+void Board::take_outline(std::size_t item) {
+    take(item);
+    turn_part(plan_.part(item), at_[item].angle_deg, own_[item]);
+    put(item);
+}
+
 std::span<const std::size_t> Board::near(const Shelf& shelf,
                                          const TurnedPart& shape,
                                          const Position& position) const {

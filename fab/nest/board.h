@@ -81,6 +81,9 @@ public:
     void restore(const std::vector<Position>& positions, const Extent& extent);
     void move(std::size_t item, const Position& to);
 
+    // After the plan has given an item that turns freely another part.
+    void take_outline(std::size_t item);
+
     // Moves the last sheet's right edge.
     void set_last_width(double width) { extent_.last_width = width; }
 

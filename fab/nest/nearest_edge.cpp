@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "fab/nest/lanes.h"
 
@@ -15,13 +16,17 @@ using Eigen::Vector2d;
 
 constexpr std::size_t kLanes = TurnedPart::kLanes;
 using Lanes = std::array<float, kLanes>;
+using Point = std::array<float, 2>;
 
 // Squared distances from the edges of one block.
-LEAFCUTTER_INLINE Lanes edge_squares(const TurnedPart& part, std::size_t first, float x, float y) {
-    const float* x0 = part.x0.data() + first;
-    const float* y0 = part.y0.data() + first;
-    const float* x1 = part.x1.data() + first;
-    const float* y1 = part.y1.data() + first;
+LEAFCUTTER_INLINE Lanes edge_squares(const TurnedPart& part,
+                                     std::size_t block,
+                                     const Point& point) {
+    const auto [x, y] = point;
+    const float* x0 = part.x0.data() + block * kLanes;
+    const float* y0 = part.y0.data() + block * kLanes;
+    const float* x1 = part.x1.data() + block * kLanes;
+    const float* y1 = part.y1.data() + block * kLanes;
     Lanes out{};
     LEAFCUTTER_LANES
     for (std::size_t k = 0; k < kLanes; ++k) {
@@ -38,64 +43,162 @@ LEAFCUTTER_INLINE Lanes edge_squares(const TurnedPart& part, std::size_t first, 
     return out;
 }
 
-// Squared distances from the boxes of kLanes blocks.
-LEAFCUTTER_INLINE Lanes box_squares(const TurnedPart& part, std::size_t first, float x, float y) {
-    const float* x0 = part.block_x0.data() + first;
-    const float* y0 = part.block_y0.data() + first;
-    const float* x1 = part.block_x1.data() + first;
-    const float* y1 = part.block_y1.data() + first;
-    Lanes out{};
+LEAFCUTTER_INLINE float least_of(const Lanes& lanes) {
+    float least = lanes[0];
     LEAFCUTTER_LANES
-    for (std::size_t k = 0; k < kLanes; ++k) {
-        const float off_x = std::max(std::max(x0[k] - x, x - x1[k]), 0.0F);
-        const float off_y = std::max(std::max(y0[k] - y, y - y1[k]), 0.0F);
-        out[k] = off_x * off_x + off_y * off_y;
+    for (std::size_t k = 1; k < kLanes; ++k) {
+        least = std::min(least, lanes[k]);
     }
-    return out;
+    return least;
 }
 
-// The edge whose squared distance is least and below `best`; part.edges if there is none.
-LEAFCUTTER_INLINE std::size_t search(const TurnedPart& part, float x, float y, float best) {
-    std::size_t nearest = part.edges;
-    for (std::size_t first = 0; first < part.blocks; first += kLanes) {
-        const Lanes boxes = box_squares(part, first, x, y);
-        for (std::size_t b = 0; b < kLanes && first + b < part.blocks; ++b) {
-            if (boxes[b] >= best) {
+struct Box {
+    float low_x, low_y, high_x, high_y;
+};
+
+LEAFCUTTER_INLINE bool meets(const TurnedPart& part, std::size_t block, const Box& box) {
+    return part.block_x0[block] <= box.high_x && part.block_x1[block] >= box.low_x &&
+           part.block_y0[block] <= box.high_y && part.block_y1[block] >= box.low_y;
+}
+
+// An edge and its squared distance.
+struct Nearest {
+    std::size_t edge = 0;
+    float square = 0.0F;
+};
+
+// Takes the block's nearest edge if it is nearer.
+LEAFCUTTER_INLINE void take_nearer(const TurnedPart& part,
+                                   std::size_t block,
+                                   const Point& point,
+                                   Nearest& nearest) {
+    const Lanes squares = edge_squares(part, block, point);
+    const float least = least_of(squares);
+    if (least < nearest.square) {
+        std::size_t lane = 0;
+        while (squares[lane] > least) {
+            ++lane;
+        }
+        nearest = {block * kLanes + lane, least};
+    }
+}
+
+// `shift_and_reach`: by which the vertices move, and what counts as near.
+LEAFCUTTER_INLINE void list_near(const TurnedPart& from,
+                                 const TurnedPart& part,
+                                 const std::array<float, 3>& shift_and_reach,
+                                 std::vector<VertexBlock>& out) {
+    const auto [dx, dy, reach] = shift_and_reach;
+    for (std::size_t i = 0; i < from.blocks; ++i) {
+        const Box box{from.block_x0[i] + dx - reach, from.block_y0[i] + dy - reach,
+                      from.block_x1[i] + dx + reach, from.block_y1[i] + dy + reach};
+        if (box.low_x > part.high_x || box.high_x < part.low_x || box.low_y > part.high_y ||
+            box.high_y < part.low_y) {
+            continue;
+        }
+        const std::size_t last = std::min(from.edges, (i + 1) * kLanes);
+        for (std::size_t block = 0; block < part.blocks; ++block) {
+            if (!meets(part, block, box)) {
                 continue;
             }
-            const std::size_t edge = (first + b) * kLanes;
-            const Lanes squares = edge_squares(part, edge, x, y);
-            for (std::size_t k = 0; k < kLanes && edge + k < part.edges; ++k) {
-                nearest = squares[k] < best ? edge + k : nearest;
-                best = std::min(best, squares[k]);
+            for (std::size_t v = i * kLanes; v < last; ++v) {
+                const float x = from.x0[v] + dx;
+                const float y = from.y0[v] + dy;
+                if (meets(part, block, {x - reach, y - reach, x + reach, y + reach}) &&
+                    least_of(edge_squares(part, block, {x, y})) < reach * reach) {
+                    out.push_back(
+                        {static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(block)});
+                }
             }
         }
     }
-    return nearest;
 }
 
-using Search = std::size_t (*)(const TurnedPart&, float, float, float);
+using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
-std::size_t search_plain(const TurnedPart& part, float x, float y, float best) {
-    return search(part, x, y, best);
+// Each vertex of `among` with the edge nearest to it.
+LEAFCUTTER_INLINE void pair_up(const TurnedPart& from,
+                               const TurnedPart& part,
+                               const std::array<float, 3>& shift_and_reach,
+                               const std::vector<VertexBlock>& among,
+                               Pairs& out) {
+    const auto [dx, dy, reach] = shift_and_reach;
+    for (std::size_t k = 0; k < among.size();) {
+        const std::size_t v = among[k].vertex;
+        const Point point{from.x0[v] + dx, from.y0[v] + dy};
+        Nearest nearest{part.edges, reach * reach};
+        for (; k < among.size() && among[k].vertex == v; ++k) {
+            take_nearer(part, among[k].block, point, nearest);
+        }
+        if (nearest.edge < part.edges) {
+            out.emplace_back(v, nearest.edge);
+        }
+    }
+}
+
+// The two above, compiled for one kind of processor.
+struct Kernels {
+    void (*list_near)(const TurnedPart&,
+                      const TurnedPart&,
+                      const std::array<float, 3>&,
+                      std::vector<VertexBlock>&);
+    void (*pair_up)(const TurnedPart&,
+                    const TurnedPart&,
+                    const std::array<float, 3>&,
+                    const std::vector<VertexBlock>&,
+                    Pairs&);
+};
+
+void list_near_plain(const TurnedPart& from,
+                     const TurnedPart& part,
+                     const std::array<float, 3>& shift_and_reach,
+                     std::vector<VertexBlock>& out) {
+    list_near(from, part, shift_and_reach, out);
+}
+
+void pair_up_plain(const TurnedPart& from,
+                   const TurnedPart& part,
+                   const std::array<float, 3>& shift_and_reach,
+                   const std::vector<VertexBlock>& among,
+                   Pairs& out) {
+    pair_up(from, part, shift_and_reach, among, out);
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
-__attribute__((target("avx2"))) std::size_t search_avx2(const TurnedPart& part,
-                                                        float x,
-                                                        float y,
-                                                        float best) {
-    return search(part, x, y, best);
+__attribute__((target("avx2"))) void list_near_avx2(const TurnedPart& from,
+                                                    const TurnedPart& part,
+                                                    const std::array<float, 3>& shift_and_reach,
+                                                    std::vector<VertexBlock>& out) {
+    list_near(from, part, shift_and_reach, out);
 }
 
-Search fastest() {
-    return __builtin_cpu_supports("avx2") != 0 ? search_avx2 : search_plain;
+__attribute__((target("avx2"))) void pair_up_avx2(const TurnedPart& from,
+                                                  const TurnedPart& part,
+                                                  const std::array<float, 3>& shift_and_reach,
+                                                  const std::vector<VertexBlock>& among,
+                                                  Pairs& out) {
+    pair_up(from, part, shift_and_reach, among, out);
+}
+
+Kernels fastest() {
+    return __builtin_cpu_supports("avx2") != 0 ? Kernels{list_near_avx2, pair_up_avx2}
+                                               : Kernels{list_near_plain, pair_up_plain};
 }
 #else
-Search fastest() {
-    return search_plain;
+Kernels fastest() {
+    return {list_near_plain, pair_up_plain};
 }
 #endif
+
+const Kernels& kernels() {
+    static const Kernels fast = fastest();
+    return fast;
+}
+
+std::array<float, 3> as_floats(const Approach& approach) {
+    return {static_cast<float>(approach.shift.x()), static_cast<float>(approach.shift.y()),
+            static_cast<float>(approach.reach)};
+}
 
 // Outlines run counterclockwise.
 Vector2d outwards(const TurnedPart& part, std::size_t edge) {
@@ -104,19 +207,12 @@ Vector2d outwards(const TurnedPart& part, std::size_t edge) {
     return Vector2d(along.y(), -along.x()).normalized();
 }
 
-}  // namespace
-
-std::optional<Foot> foot_of(const TurnedPart& part, const Vector2d& from, double reach) {
-    static const Search nearest = fastest();
-    const std::size_t edge =
-        nearest(part, static_cast<float>(from.x()), static_cast<float>(from.y()),
-                static_cast<float>(reach * reach));
-    if (edge == part.edges) {
-        return std::nullopt;
-    }
+Foot foot_on(const TurnedPart& part, std::size_t edge, const Vector2d& from) {
     const Vector2d start(part.x0[edge], part.y0[edge]);
     const Vector2d along = Vector2d(part.x1[edge], part.y1[edge]) - start;
-    const double at = std::clamp((from - start).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    // Vertices that lie very close together may be one as floats.
+    const double square = along.squaredNorm();
+    const double at = square > 0.0 ? std::clamp((from - start).dot(along) / square, 0.0, 1.0) : 0.0;
     Vector2d out = outwards(part, edge);
     if (at <= 0.0) {
         out += outwards(part, edge == 0 ? part.edges - 1 : edge - 1);
@@ -132,6 +228,46 @@ std::optional<Foot> foot_of(const TurnedPart& part, const Vector2d& from, double
     const bool corner = (at <= 0.0 || at >= 1.0) && off.norm() > 1e-6;
     foot.normal = corner ? Vector2d(sign * off.normalized()) : out.normalized();
     return foot;
+}
+
+}  // namespace
+
+std::optional<Foot> foot_of(const TurnedPart& part, const Vector2d& from, double reach) {
+    const auto x = static_cast<float>(from.x());
+    const auto y = static_cast<float>(from.y());
+    const auto near = static_cast<float>(reach);
+    Nearest nearest{part.edges, near * near};
+    for (std::size_t block = 0; block < part.blocks; ++block) {
+        if (meets(part, block, {x - near, y - near, x + near, y + near})) {
+            take_nearer(part, block, {x, y}, nearest);
+        }
+    }
+    if (nearest.edge == part.edges) {
+        return std::nullopt;
+    }
+    return foot_on(part, nearest.edge, from);
+}
+
+void near_blocks(const Approach& approach, std::vector<VertexBlock>& out) {
+    out.clear();
+    kernels().list_near(approach.from, approach.part, as_floats(approach), out);
+    std::sort(out.begin(), out.end(), [](const VertexBlock& a, const VertexBlock& b) {
+        return a.vertex != b.vertex ? a.vertex < b.vertex : a.block < b.block;
+    });
+}
+
+void feet_among(const Approach& approach,
+                const std::vector<VertexBlock>& among,
+                std::vector<VertexFoot>& out) {
+    static thread_local Pairs pairs;
+    pairs.clear();
+    out.clear();
+    const TurnedPart& from = approach.from;
+    kernels().pair_up(from, approach.part, as_floats(approach), among, pairs);
+    for (const auto& [vertex, edge] : pairs) {
+        const Vector2d at = Vector2d(from.x0[vertex], from.y0[vertex]) + approach.shift;
+        out.push_back({vertex, foot_on(approach.part, edge, at)});
+    }
 }
 
 }  // namespace leafcutter::fab

@@ -260,6 +260,19 @@ void PoseSearch::descend(std::size_t item, Candidate& candidate, const Steps& st
     }
 }
 
+void PoseSearch::forget_kept(double unit) {
+    apart_ = 0.05 * unit;
+    kept_count_ = 0;
+}
+
+void PoseSearch::descend_kept(std::size_t item, double unit) {
+    for (std::size_t i = 0; i < kept_count_; ++i) {
+        descend(item, kept_[i], {0.25 * unit, 0.02 * unit, 5.0, 1.0});
+    }
+    std::stable_sort(kept_, kept_ + kept_count_,
+                     [](const Candidate& a, const Candidate& b) { return a.loss < b.loss; });
+}
+
 Candidate PoseSearch::best_for(std::size_t item) {
     constexpr int kNear = 25;
     constexpr int kAnywhere = 50;
@@ -267,8 +280,7 @@ Candidate PoseSearch::best_for(std::size_t item) {
     const NestPart& part = board_.plan().part(item);
     const Position now = board_.position(item);
     const double unit = step_unit(part, board_.shape(item));
-    apart_ = 0.05 * unit;
-    kept_count_ = 0;
+    forget_kept(unit);
     consider(item, now);
     Position position;
     for (int i = 0; i < kAnywhere; ++i) {
@@ -287,15 +299,28 @@ Candidate PoseSearch::best_for(std::size_t item) {
             }
         }
     }
-    const Steps coarse{0.25 * unit, 0.02 * unit, 5.0, 1.0};
-    for (std::size_t i = 0; i < kept_count_; ++i) {
-        descend(item, kept_[i], coarse);
-    }
-    Candidate best =
-        *std::min_element(kept_, kept_ + kept_count_,
-                          [](const Candidate& a, const Candidate& b) { return a.loss < b.loss; });
+    descend_kept(item, unit);
+    Candidate best = kept_[0];
     descend(item, best, {0.01 * unit, 0.0003 * unit, 0.5, 0.02});
     return best;
+}
+
+std::vector<Candidate> PoseSearch::beside_others(std::size_t item, int tries) {
+    const double unit = step_unit(board_.plan().part(item), board_.shape(item));
+    forget_kept(unit);
+    Position position;
+    for (int i = 0; i < tries; ++i) {
+        if (sample_mate(item, position)) {
+            consider(item, position);
+        }
+    }
+    for (int i = 0; i < tries / 3; ++i) {
+        if (sample(item, position)) {
+            consider(item, position);
+        }
+    }
+    descend_kept(item, unit);
+    return {kept_, kept_ + kept_count_};
 }
 
 Candidate PoseSearch::leftmost(std::size_t item, int samples) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "fab/nest/board.h"
 #include "fab/nest/random.h"
@@ -21,6 +22,10 @@ public:
 
     // The best position found for the item; its present one at worst.
     Candidate best_for(std::size_t item);
+
+    // Up to three positions where the item, a band that turns freely, overlaps the least, best
+    // first: of `tries` beside other bands, and some anywhere.
+    std::vector<Candidate> beside_others(std::size_t item, int tries);
 
     // A position inside a sheet without any overlap that lies as far left and low as `samples`
     // tries find, or one that overlaps (loss > 0) if there is none.
@@ -50,6 +55,8 @@ private:
     Eigen::Vector2d pivot(const NestPart& part);
     void consider(std::size_t item, const Position& position);
     void keep(const Candidate& candidate);
+    void forget_kept(double unit);
+    void descend_kept(std::size_t item, double unit);
     Axis random_axis(const NestPart& part);
     void descend(std::size_t item, Candidate& candidate, const Steps& steps);
     float loss_of(std::size_t item, const Position& position, float bound);

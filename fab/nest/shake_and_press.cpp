@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "geometry/error.h"
 
@@ -18,6 +19,10 @@ constexpr int kRelaxSteps = 16;
 constexpr double kWorse = 0.004;    // Of the area, that may be lost at the beginning.
 constexpr double kFarthest = 0.01;  // From the best.
 constexpr std::size_t kMostLaidAnew = 4;
+// Which of the two kinds of change yields more is learnt as the search goes on.
+constexpr double kHalfForgotten = 500'000.0;  // Evaluations.
+constexpr double kLeastShare = 0.05;          // Of the work, for either.
+constexpr double kFirstShaken = 400'000.0;    // A poor start gains most by great changes.
 
 }  // namespace
 
@@ -28,17 +33,14 @@ ShakeAndPress::ShakeAndPress(const BoardPlan& plan, const Packing& start, std::u
       separation_(board_, random_),
       search_(board_, random_),
       relaxation_(board_),
+      insertion_(plan, random_.bits()),
       swap_(plan),
-      best_(start),
-      current_(start),
-      best_area_(area_taken(plan, start.extent)),
-      current_area_(best_area_) {}
+      best_{start, area_taken(plan, start.extent), {}},
+      current_(best_) {}
 
 void ShakeAndPress::adopt(const Packing& better) {
-    best_ = better;
-    best_area_ = area_taken(plan_, better.extent);
+    best_ = {better, area_taken(plan_, better.extent), {}};
     current_ = best_;
-    current_area_ = best_area_;
 }
 
 void ShakeAndPress::advance(std::int64_t evaluations,
@@ -47,32 +49,74 @@ void ShakeAndPress::advance(std::int64_t evaluations,
     progress_ = progress;
     const std::int64_t until = this->evaluations() + evaluations;
     while (this->evaluations() < until) {
-        if (!working_) {
-            begin_trial();
+        if (stop.stop_requested()) {
+            throw geometry::Cancelled();
         }
-        if (is_freed(stop)) {
-            press();
+        if (current_.area > best_.area * (1.0 + kFarthest)) {
+            current_ = best_;
         }
+        const bool shakes = shakes_next();
+        const double area = best_.area;
+        const std::int64_t before = this->evaluations();
+        if (shakes) {
+            shake(stop);
+        } else {
+            insert();
+        }
+        (shakes ? shaking_ : inserting_)
+            .add((area - best_.area) / area, static_cast<double>(this->evaluations() - before));
     }
 }
 
-// Places spread with the sheet's edge as it makes room.
-void ShakeAndPress::begin_trial() {
-    if (current_area_ > best_area_ * (1.0 + kFarthest)) {
-        current_ = best_;
-        current_area_ = best_area_;
+void ShakeAndPress::Yield::add(double more_gain, double more_work) {
+    const double kept = kHalfForgotten / (kHalfForgotten + more_work);
+    gain = kept * gain + more_gain;
+    work = kept * work + more_work;
+    whole_work += more_work;
+}
+
+// Whatever yields more; but neither is ever given up.
+bool ShakeAndPress::shakes_next() const {
+    const double whole = shaking_.whole_work + inserting_.whole_work;
+    if (shaking_.whole_work <= std::max(kFirstShaken, kLeastShare * whole)) {
+        return true;
     }
-    working_ = true;
-    rounds_ = 0;
+    return inserting_.whole_work > kLeastShare * whole && shaking_.rate() > inserting_.rate();
+}
+
+void ShakeAndPress::insert() {
+    if (current_.settled.positions.empty()) {
+        current_.settled = insertion_.settle(current_.packing);
+    }
+    if (auto found = insertion_.attempt(current_.settled)) {
+        judge({found->packing, area_taken(plan_, found->packing.extent), found->settled});
+    }
+}
+
+void ShakeAndPress::shake(const std::stop_token& stop) {
+    begin_shaking();
+    if (!is_freed(stop)) {
+        return;
+    }
+    Packing found{board_.positions(), board_.extent()};
+    if (relaxation_.press()) {
+        found = {board_.positions(), board_.extent()};
+    }
+    const double area = area_taken(plan_, found.extent);
+    judge({std::move(found), area, {}});
+}
+
+// Places spread with the sheet's edge as it makes room.
+void ShakeAndPress::begin_shaking() {
     const bool swaps = !first_ && random_.below(2) == 0;
-    std::vector<Position> positions = current_.positions;
+    std::vector<Position> positions = current_.packing.positions;
     if (swaps) {
         swap_.apply(positions, random_);
     }
-    const Extent wider = extent_of_area(plan_, current_area_ * (1.0 + kSlack));
+    const Extent wider = extent_of_area(plan_, current_.area * (1.0 + kSlack));
     for (Position& at : positions) {
-        if (wider.bins == current_.extent.bins && at.bin + 1 == wider.bins) {
-            at.x *= wider.last_width / current_.extent.last_width;
+        if (wider.bins == current_.packing.extent.bins && at.bin + 1 == wider.bins) {
+            at.x *= wider.last_width / current_.packing.extent.last_width;
         }
     }
     board_.restore(positions, wider);
@@ -111,45 +155,38 @@ void ShakeAndPress::lay_anew() {
     }
 }
 
-// One round of the trial. Gives the trial up after the last one.
 bool ShakeAndPress::is_freed(const std::stop_token& stop) {
-    const auto state = separation_.run(board_.evaluations() + kRound, stop);
-    if (stop.stop_requested()) {
-        throw geometry::Cancelled();
+    for (int round = 0; round < kRounds; ++round) {
+        const auto state = separation_.run(board_.evaluations() + kRound, stop);
+        if (state == Separation::State::Feasible) {
+            return true;
+        }
+        const std::vector<Position> before = board_.positions();
+        if (relaxation_.relax(kRelaxSteps)) {
+            return true;
+        }
+        if (state == Separation::State::GaveUp) {
+            return false;
+        }
+        for (std::size_t item = 0; item < before.size(); ++item) {
+            board_.move(item, before[item]);
+        }
     }
-    if (state == Separation::State::Feasible) {
-        return true;
-    }
-    const std::vector<Position> before = board_.positions();
-    if (relaxation_.relax(kRelaxSteps)) {
-        return true;
-    }
-    for (std::size_t item = 0; item < before.size(); ++item) {
-        board_.move(item, before[item]);
-    }
-    working_ = ++rounds_ < kRounds && state == Separation::State::Working;
     return false;
 }
 
-void ShakeAndPress::press() {
-    working_ = false;
-    Packing found{board_.positions(), board_.extent()};
-    if (relaxation_.press()) {
-        found = {board_.positions(), board_.extent()};
+void ShakeAndPress::judge(Layout pressed) {
+    const BoardPlan::Room& last =
+        plan_.rooms[static_cast<std::size_t>(pressed.packing.extent.bins) - 1];
+    if (pressed.packing.extent.last_width > last.width) {
+        return;
     }
-    judge(found);
-}
-
-void ShakeAndPress::judge(const Packing& pressed) {
-    const double area = area_taken(plan_, pressed.extent);
     const double worse = kWorse * std::max(0.0, 1.0 - progress_) * std::abs(random_.normal());
-    if (area < current_area_ * (1.0 + worse)) {
-        current_ = pressed;
-        current_area_ = area;
-    }
-    if (area < best_area_) {
+    if (pressed.area < best_.area) {
         best_ = pressed;
-        best_area_ = area;
+    }
+    if (pressed.area < current_.area * (1.0 + worse)) {
+        current_ = std::move(pressed);
     }
 }
 

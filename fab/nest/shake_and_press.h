@@ -1,8 +1,8 @@
-// A search for long bands that turn freely: shakes a part of what it has, frees it of overlaps in a
-// little more room, and presses it; keeps what became smaller, or nearly so. An iterated local
-// search (Lourenço, Martin and Stützle, "Iterated local search", Handbook of Metaheuristics, 2003)
-// whose local search moves all parts at once: bands that lie side by side over their whole length
-// hardly move one at a time.
+// A search for long bands that turn freely: moves one of them elsewhere, or shakes some and frees
+// them of overlaps in a little more room, and presses all; keeps what became smaller, or nearly so.
+// An iterated local search (Lourenço, Martin and Stützle, "Iterated local search", Handbook of
+// Metaheuristics, 2003) whose local search moves all parts at once: bands that lie side by side
+// over their whole length hardly move one at a time.
 
 #pragma once
 
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fab/nest/board.h"
+#include "fab/nest/insertion.h"
 #include "fab/nest/large_swap.h"
 #include "fab/nest/random.h"
 #include "fab/nest/relaxation.h"
@@ -24,19 +25,37 @@ public:
     ShakeAndPress(const BoardPlan& plan, const Packing& start, std::uint64_t seed);
 
     void advance(std::int64_t evaluations, double progress, const std::stop_token& stop) override;
-    const Packing& best() const override { return best_; }
-    double best_area() const override { return best_area_; }
+    const Packing& best() const override { return best_.packing; }
+    double best_area() const override { return best_.area; }
     std::int64_t evaluations() const override {
-        return board_.evaluations() + relaxation_.evaluations();
+        return board_.evaluations() + relaxation_.evaluations() + insertion_.evaluations();
     }
     void adopt(const Packing& better) override;
 
 private:
-    void begin_trial();
+    struct Layout {
+        Packing packing;
+        double area = 0.0;
+        Packing settled;  // As of Insertion::settle(), once that is asked for.
+    };
+
+    // What one of the two kinds of change gave for its evaluations, the latest ones above all.
+    struct Yield {
+        double gain = 0.0;  // Shares of the area.
+        double work = 0.0;
+        double whole_work = 0.0;  // All so far.
+
+        void add(double more_gain, double more_work);
+        double rate() const { return gain / work; }
+    };
+
+    bool shakes_next() const;
+    void insert();
+    void shake(const std::stop_token& stop);
+    void begin_shaking();
     void lay_anew();
     bool is_freed(const std::stop_token& stop);
-    void press();
-    void judge(const Packing& pressed);
+    void judge(Layout pressed);
 
     const BoardPlan& plan_;
     Random random_;
@@ -44,15 +63,14 @@ private:
     Separation separation_;
     PoseSearch search_;
     Relaxation relaxation_;
+    Insertion insertion_;
     LargeSwap swap_;
-    Packing best_;
-    Packing current_;  // What is shaken next.
-    double best_area_ = 0.0;
-    double current_area_ = 0.0;
+    Layout best_;
+    Layout current_;  // What is changed next.
     double progress_ = 0.0;
-    bool first_ = true;     // Nothing was shaken yet.
-    bool working_ = false;  // On a trial.
-    int rounds_ = 0;        // Of the trial.
+    bool first_ = true;  // Nothing was shaken yet.
+    Yield inserting_;
+    Yield shaking_;
 };
 
 }  // namespace leafcutter::fab

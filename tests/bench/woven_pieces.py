@@ -12,6 +12,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from sections import write_section
+
 MODELS = ['eight-7k.off', 'hand-6-boundaries.obj', 'face-gu.off']
 TITLE = '## Pieces of woven models'
 MARGIN_MM, SPACING_MM = 5.0, 1.0
@@ -84,19 +86,13 @@ def main():
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as directory:
         rows = [row(model, args, directory) for model in MODELS]
-    head = [TITLE, '',
-            f'All pieces of a model (defaults, {args.time:g} s of nesting), weft and warp on sheets of their own. "Used" counts the last',
-            'sheet of each material by the part that the pieces take; density over that part is "filled". libnest2d nests the',
-            'convex hulls of the same pieces (it takes no others) on the same sheets, margins and gap; the bound is the pieces\' area',
-            'with half the gap around, over the usable area, rounded up for each material.', '',
-            '| model | pieces | sheets | density % | filled % | smallest gap mm | libnest2d sheets | its density % | bound |',
-            '|---|--:|--:|--:|--:|--:|--:|--:|--:|']
-    section = '\n'.join(head + rows) + '\n'
-    path = Path(__file__).with_name('nesting.md')
-    text = path.read_text() if path.exists() else '# Nesting figures\n'
-    old = re.compile(re.escape(TITLE) + r'\n.*?(?=\n## |\Z)', re.S)
-    text = old.sub(lambda _: section.rstrip('\n'), text) if old.search(text) else f'{text.rstrip()}\n\n{section}'
-    path.write_text(text.rstrip('\n') + '\n')
+    write_section(Path(__file__).with_name('nesting.md'), TITLE, [
+        f'All pieces of a model (defaults, {args.time:g} s of nesting), weft and warp on sheets of their own. "Used" counts the last',
+        'sheet of each material by the part that the pieces take; density over that part is "filled". libnest2d nests the',
+        'convex hulls of the same pieces (it takes no others) on the same sheets, margins and gap; the bound is the pieces\' area',
+        'with half the gap around, over the usable area, rounded up for each material.', '',
+        '| model | pieces | sheets | density % | filled % | smallest gap mm | libnest2d sheets | its density % | bound |',
+        '|---|--:|--:|--:|--:|--:|--:|--:|--:|', *rows])
 
 
 main()

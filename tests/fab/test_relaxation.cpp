@@ -1,9 +1,13 @@
 // Parts that move all at once.
 
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "fab/nest/contacts.h"
+#include "fab/nest/insertion.h"
 #include "fab/nest/nearest_edge.h"
 #include "fab/nest/relaxation.h"
 
@@ -39,6 +43,21 @@ TurnedPart turned(const NestPart& part) {
     return out;
 }
 
+// A quarter of a ring, 10 wide, 100 across.
+Ring bent_band() {
+    constexpr int kParts = 12;
+    Ring ring;
+    for (int side = 0; side < 2; ++side) {
+        for (int i = 0; i <= kParts; ++i) {
+            const double share = static_cast<double>(side == 0 ? i : kParts - i) / kParts;
+            const double angle = 0.5 * std::numbers::pi * share;
+            const double radius = side == 0 ? 100.0 : 90.0;
+            ring.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+        }
+    }
+    return ring;
+}
+
 TEST(NearestEdge, MeasuresFromOutsideAndFromInside) {
     const NestPart part = make_part(rectangle(10.0, 100.0), 0.0, {});
     const TurnedPart shape = turned(part);
@@ -61,6 +80,63 @@ TEST(NearestEdge, PointsAwayFromACorner) {
     EXPECT_NEAR(foot->distance, 5.0, 1e-5);
     EXPECT_NEAR(foot->normal.x(), 0.6, 1e-5);
     EXPECT_NEAR(foot->normal.y(), 0.8, 1e-5);
+}
+
+TEST(NearestEdge, TakesVerticesThatAreOneAsFloats) {
+    const Ring ring{{0.0, 0.0}, {10.0, 0.0}, {10.0, 100.0}, {10.0 - 1e-9, 100.0}, {0.0, 100.0}};
+    const auto foot = foot_of(turned(make_part(ring, 0.0, {})), {6.0, 51.0}, 10.0);
+    ASSERT_TRUE(foot);
+    EXPECT_TRUE(std::isfinite(foot->distance));
+    EXPECT_TRUE(foot->point.allFinite());
+    EXPECT_NEAR(foot->normal.norm(), 1.0, 1e-5);
+}
+
+TEST(NearestEdge, FindsForAllVerticesWhatItFindsForEach) {
+    const TurnedPart band = turned(make_part(bent_band(), 0.0, {}));
+    constexpr double kNear = 6.0;
+    std::vector<VertexBlock> among;
+    std::vector<VertexFoot> feet;
+    for (const Eigen::Vector2d shift : {Eigen::Vector2d(12.0, 3.0), Eigen::Vector2d(-8.0, 40.0)}) {
+        near_blocks({band, band, shift, 2.0 * kNear}, among);
+        feet_among({band, band, shift, kNear}, among, feet);
+        ASSERT_FALSE(feet.empty());
+        auto next = feet.begin();
+        for (std::size_t i = 0; i < band.edges; ++i) {
+            const auto foot = foot_of(band, Eigen::Vector2d(band.x0[i], band.y0[i]) + shift, kNear);
+            const bool listed = next != feet.end() && next->vertex == i;
+            ASSERT_EQ(listed, foot.has_value());
+            if (listed) {
+                EXPECT_EQ(next->foot.distance, foot->distance);
+                ++next;
+            }
+        }
+    }
+}
+
+TEST(Contacts, ForgetNothingAsPartsMove) {
+    BoardPlan plan = plan_of(8, 300.0);
+    plan.parts[0] = make_part(bent_band(), 0.0, {});
+    Board board(plan);
+    board.restore(in_a_row(8, 14.0, 100.0), {1, 400.0});
+    Contacts kept(board);
+    Random random(5);
+    for (int step = 0; step < 200; ++step) {
+        const std::size_t item = random.below(8);
+        Position to = board.position(item);
+        to.x += random.between(-1.5, 1.5);
+        to.y += random.between(-1.5, 1.5);
+        to.angle_deg += random.between(-1.0, 1.0);
+        board.move(item, to);
+        const std::vector<Contact>& now = kept.find();
+        Contacts fresh(board);
+        const std::vector<Contact>& anew = fresh.find();
+        ASSERT_EQ(now.size(), anew.size());
+        for (std::size_t k = 0; k < now.size(); ++k) {
+            ASSERT_EQ(now[k].item, anew[k].item);
+            ASSERT_EQ(now[k].other, anew[k].other);
+            ASSERT_EQ(now[k].want, anew[k].want);
+        }
+    }
 }
 
 TEST(Relaxation, FreesALongRowThatOverlapsAllOver) {
@@ -130,6 +206,36 @@ TEST(Relaxation, TurnsOnlyAsFarAsAPartMay) {
     for (const Position& at : board.positions()) {
         EXPECT_LE(std::abs(at.angle_deg), 1.0 + 1e-9);
     }
+}
+
+// Two rows of bands, the upper one with a hole: a band of the last column fits there.
+TEST(Insertion, TakesABandToWhereThereIsRoom) {
+    const BoardPlan plan = plan_of(10, 201.0);
+    Packing start;
+    start.extent = {1, 61.0};
+    for (int i = 0; i < 10; ++i) {
+        Position at;
+        at.x = 5.1 + 10.1 * (i < 5 ? i : i == 9 ? 5 : i - 5);
+        at.y = i < 5 || i == 9 ? 50.1 : 150.5;
+        start.positions.push_back(at);
+    }
+    Board board(plan);
+    board.restore(start.positions, start.extent);
+    ASSERT_TRUE(board.clashes().empty());
+    Insertion insertion(plan, 3);
+    const Packing settled = insertion.settle(start);
+    EXPECT_LE(settled.extent.last_width, start.extent.last_width);
+    double least = start.extent.last_width;
+    for (int tries = 0; tries < 100; ++tries) {
+        if (const auto pressed = insertion.attempt(settled)) {
+            board.restore(pressed->packing.positions, pressed->packing.extent);
+            ASSERT_TRUE(board.clashes().empty());
+            EXPECT_LE(pressed->settled.extent.last_width, 1.01 * settled.extent.last_width);
+            least = std::min(least, pressed->packing.extent.last_width);
+        }
+    }
+    EXPECT_LT(least, 51.0);
+    EXPECT_GT(insertion.evaluations(), 0);
 }
 
 }  // namespace
