@@ -52,11 +52,11 @@ LEAFCUTTER_INLINE float least_of(const Lanes& lanes) {
     return least;
 }
 
-struct Box {
+struct Bounds {
     float low_x, low_y, high_x, high_y;
 };
 
-LEAFCUTTER_INLINE bool meets(const TurnedPart& part, std::size_t block, const Box& box) {
+LEAFCUTTER_INLINE bool meets(const TurnedPart& part, std::size_t block, const Bounds& box) {
     return part.block_x0[block] <= box.high_x && part.block_x1[block] >= box.low_x &&
            part.block_y0[block] <= box.high_y && part.block_y1[block] >= box.low_y;
 }
@@ -90,8 +90,8 @@ LEAFCUTTER_INLINE void list_near(const TurnedPart& from,
                                  std::vector<VertexBlock>& out) {
     const auto [dx, dy, reach] = shift_and_reach;
     for (std::size_t i = 0; i < from.blocks; ++i) {
-        const Box box{from.block_x0[i] + dx - reach, from.block_y0[i] + dy - reach,
-                      from.block_x1[i] + dx + reach, from.block_y1[i] + dy + reach};
+        const Bounds box{from.block_x0[i] + dx - reach, from.block_y0[i] + dy - reach,
+                         from.block_x1[i] + dx + reach, from.block_y1[i] + dy + reach};
         if (box.low_x > part.high_x || box.high_x < part.low_x || box.low_y > part.high_y ||
             box.high_y < part.low_y) {
             continue;

@@ -339,6 +339,9 @@ NestPart make_part(const Ring& outline, double grow, Rotations allowed_deg) {
     if (part.diameter > kBandSlenderness * part.width) {
         const double length = part.area / part.width;
         const auto count = static_cast<std::size_t>(length / part.width);
+        // Two bands that lie edge by edge then meet in vertices of both, not only at corners, where
+        // no direction is that of the way apart.
+        part.outline = subdivided(part.outline, 2.0 * part.width);
         part.middle =
             middle_line(part.outline, std::clamp<std::size_t>(count, 8, kMostBandCircles));
         for (const BandPoint& point : part.middle) {

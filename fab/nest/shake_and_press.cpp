@@ -81,7 +81,7 @@ bool ShakeAndPress::shakes_next() const {
     if (shaking_.whole_work <= std::max(kFirstShaken, kLeastShare * whole)) {
         return true;
     }
-    return inserting_.whole_work > kLeastShare * whole && shaking_.rate() > inserting_.rate();
+    return inserting_.whole_work > kLeastShare * whole && shaking_.rate() >= inserting_.rate();
 }
 
 void ShakeAndPress::insert() {

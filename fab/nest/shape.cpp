@@ -151,6 +151,18 @@ NestShape make_shape(const Ring& outline) {
     return shape;
 }
 
+Ring subdivided(const Ring& ring, double longest) {
+    Ring out;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Eigen::Vector2d along = ring[(i + 1) % ring.size()] - ring[i];
+        const auto parts = static_cast<int>(std::max(1.0, std::ceil(along.norm() / longest)));
+        for (int k = 0; k < parts; ++k) {
+            out.emplace_back(ring[i] + static_cast<double>(k) / parts * along);
+        }
+    }
+    return out;
+}
+
 std::optional<double> fitting_angle(const NestShape& shape,
                                     const Eigen::Vector2d& extent,
                                     const Rotations& allowed_deg) {

@@ -55,6 +55,9 @@ Box bounds(std::span<const Eigen::Vector2d> points);
 double signed_area(std::span<const Eigen::Vector2d> ring);
 Ring moved(const Ring& ring, const Pose& pose);
 
+// The same outline; edges longer than `longest` in equal parts.
+Ring subdivided(const Ring& ring, double longest);
+
 // A rotation with which the outline fits into width x height, or none. Exact for convex hulls:
 // tries every direction in which an edge of the hull lies along an axis, and the fine steps
 // between.

@@ -83,8 +83,9 @@ TEST(NearestEdge, PointsAwayFromACorner) {
 }
 
 TEST(NearestEdge, TakesVerticesThatAreOneAsFloats) {
-    const Ring ring{{0.0, 0.0}, {10.0, 0.0}, {10.0, 100.0}, {10.0 - 1e-9, 100.0}, {0.0, 100.0}};
-    const auto foot = foot_of(turned(make_part(ring, 0.0, {})), {6.0, 51.0}, 10.0);
+    NestPart part = make_part(rectangle(10.0, 100.0), 0.0, {});
+    part.outline = {{5.0, 50.0}, {5.0 - 1e-9, 50.0}, {-5.0, 50.0}, {-5.0, -50.0}, {5.0, -50.0}};
+    const auto foot = foot_of(turned(part), {6.0, 51.0}, 10.0);
     ASSERT_TRUE(foot);
     EXPECT_TRUE(std::isfinite(foot->distance));
     EXPECT_TRUE(foot->point.allFinite());
@@ -96,7 +97,7 @@ TEST(NearestEdge, FindsForAllVerticesWhatItFindsForEach) {
     constexpr double kNear = 6.0;
     std::vector<VertexBlock> among;
     std::vector<VertexFoot> feet;
-    for (const Eigen::Vector2d shift : {Eigen::Vector2d(12.0, 3.0), Eigen::Vector2d(-8.0, 40.0)}) {
+    for (const Eigen::Vector2d& shift : {Eigen::Vector2d(12.0, 3.0), Eigen::Vector2d(-8.0, 40.0)}) {
         near_blocks({band, band, shift, 2.0 * kNear}, among);
         feet_among({band, band, shift, kNear}, among, feet);
         ASSERT_FALSE(feet.empty());
@@ -148,6 +149,18 @@ TEST(Relaxation, FreesALongRowThatOverlapsAllOver) {
     EXPECT_TRUE(relaxation.relax(30));
     EXPECT_TRUE(board.clashes().empty());
     EXPECT_GT(relaxation.evaluations(), 0);
+}
+
+TEST(Relaxation, FreesRectanglesThatLieEdgeByEdge) {
+    const BoardPlan plan = plan_of(20, 120.0);
+    Board board(plan);
+    std::vector<Position> positions = in_a_row(20, 9.8, 55.0);
+    for (Position& at : positions) {
+        at.y = 55.0;
+    }
+    board.restore(positions, {1, 200.1});
+    ASSERT_FALSE(board.clashes().empty());
+    EXPECT_TRUE(Relaxation(board).relax(30));
 }
 
 TEST(Relaxation, SaysSoWhereThereIsNoRoom) {
