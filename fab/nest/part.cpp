@@ -19,6 +19,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::size_t kMostCircles = 32;
 constexpr std::size_t kMostBandCircles = 48;
 constexpr double kBandSlenderness = 6.0;
+// Along a band as long as its diameter; a sliver has hardly any width.
+constexpr double kMostPoints = 64.0;
 
 // Far outside of everything, yet its square is a float.
 constexpr float kNowhere = 1e15F;
@@ -341,7 +343,8 @@ NestPart make_part(const Ring& outline, double grow, Rotations allowed_deg) {
         const auto count = static_cast<std::size_t>(length / part.width);
         // Two bands that lie edge by edge then meet in vertices of both, not only at corners, where
         // no direction is that of the way apart.
-        part.outline = subdivided(part.outline, 2.0 * part.width);
+        part.outline =
+            subdivided(part.outline, std::max(2.0 * part.width, part.diameter / kMostPoints));
         part.middle =
             middle_line(part.outline, std::clamp<std::size_t>(count, 8, kMostBandCircles));
         for (const BandPoint& point : part.middle) {

@@ -92,6 +92,10 @@ TEST(NearestEdge, TakesVerticesThatAreOneAsFloats) {
     EXPECT_NEAR(foot->normal.norm(), 1.0, 1e-5);
 }
 
+TEST(Part, OfASliverHasFewVertices) {
+    EXPECT_LT(make_part(rectangle(1e-5, 500.0), 0.0, {}).outline.size(), 200U);
+}
+
 TEST(NearestEdge, FindsForAllVerticesWhatItFindsForEach) {
     const TurnedPart band = turned(make_part(bent_band(), 0.0, {}));
     constexpr double kNear = 6.0;
