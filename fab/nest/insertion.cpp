@@ -12,10 +12,12 @@ namespace {
 constexpr int kStages = 5;         // The last one is the whole width.
 constexpr int kMeasured = 2;       // Of which seams are measured.
 constexpr double kThinnest = 0.2;  // Share of the width, at the first stage.
-constexpr int kSteps = 3;          // Of all parts, at each stage.
+constexpr int kSteps = 2;          // Of all parts, at each stage.
 constexpr int kTries = 60;         // Seams looked at.
-constexpr double kWider = 0.002;   // What may be lost: presses of more hardly ever gain.
-constexpr double kDeepest = 0.06;  // Of a width: what overlaps more is entangled.
+constexpr int kParted = 2;         // The stage by which others have made way,
+constexpr double kLost = 3e-4;     // Of the layout's width: what a push leaves open.
+constexpr double kCrossed = 0.15;  // or lie across if they overlap by this share of a width still.
+constexpr double kDeepest = 0.06;  // Likewise at the end.
 
 Eigen::Vector2d nearest_of_middle(const NestPart& band, const Eigen::Vector2d& point) {
     double best = std::numeric_limits<double>::infinity();
@@ -91,11 +93,16 @@ Packing Insertion::settle(const Packing& packing) {
     return laid();
 }
 
-std::optional<Insertion::Pressed> Insertion::attempt(const Packing& settled) {
+std::optional<Insertion::Pressed> Insertion::attempt(const Packing& settled, double wider) {
     board_.restore(settled.positions, settled.extent);
     const std::size_t item = bands_[random_.below(bands_.size())];
-    const double widest = settled.extent.last_width * (1.0 + kWider);
-    board_.move(item, elsewhere(item));
+    const double widest = settled.extent.last_width * (1.0 + std::max(kLost, wider));
+    const std::optional<Position> to = elsewhere(item);
+    if (!to) {
+        set_stage(item, kStages - 1);
+        return std::nullopt;
+    }
+    board_.move(item, *to);
     if (!grow(item, widest)) {
         return std::nullopt;
     }
@@ -120,32 +127,29 @@ void Insertion::set_stage(std::size_t item, int stage) {
     relaxation_.forget(item);
 }
 
-// A good place, but not the one where it was.
-Position Insertion::elsewhere(std::size_t item) {
+// A good place beside another band, but not where it came from: there it would only fall back.
+std::optional<Position> Insertion::elsewhere(std::size_t item) {
     const Position from = board_.position(item);
     Position away = from;
     away.x = -1e5;
     board_.move(item, away);
     set_stage(item, kMeasured);
-    std::vector<Candidate> found = search_.beside_others(item, kTries);
-    std::erase_if(found, [&](const Candidate& candidate) {
-        const Position& at = candidate.position;
-        return at.bin == from.bin &&
-               std::hypot(at.x - from.x, at.y - from.y) <= 0.5 * board_.plan().part(item).width;
-    });
+    const std::vector<Candidate> found = search_.beside_others(item, kTries, from);
     if (found.empty()) {
-        return from;
+        return std::nullopt;
     }
-    const double pick = std::min(0.5 * std::abs(random_.normal()), 0.999);
+    const double pick = std::min(0.3 * std::abs(random_.normal()), 0.999);
     return found[static_cast<std::size_t>(pick * static_cast<double>(found.size()))].position;
 }
 
-// False, with the item at full width all the same, if the others would need more than `widest`.
+// False, with the item at full width all the same, if the others would need more than `widest` or
+// do not part.
 bool Insertion::grow(std::size_t item, double widest) {
+    const double crossed = kCrossed * plan_.parts[whole_[item]].width;
     for (int stage = 0; stage < kStages; ++stage) {
         set_stage(item, stage);
-        relaxation_.make_room(kSteps);
-        if (board_.extent().last_width > widest) {
+        const double deepest = relaxation_.make_room(kSteps);
+        if (board_.extent().last_width > widest || (stage >= kParted && deepest > crossed)) {
             set_stage(item, kStages - 1);
             return false;
         }

@@ -29,15 +29,16 @@ public:
         Packing settled;  // As of settle().
     };
 
-    // Moves a band, picked at random. Nothing if the layout would become much wider than `settled`,
-    // which comes of settle(), or could not be freed of overlaps.
-    std::optional<Pressed> attempt(const Packing& settled);
+    // Moves a band, picked at random, to another seam. Nothing if the layout would become wider
+    // than `settled`, which comes of settle(), by more than a share of `wider`, or if it could not
+    // be freed of overlaps.
+    std::optional<Pressed> attempt(const Packing& settled, double wider);
 
     std::int64_t evaluations() const { return board_.evaluations() + relaxation_.evaluations(); }
 
 private:
     void set_stage(std::size_t item, int stage);
-    Position elsewhere(std::size_t item);
+    std::optional<Position> elsewhere(std::size_t item);
     bool grow(std::size_t item, double widest);
     Packing laid() const { return {board_.positions(), board_.extent()}; }
 

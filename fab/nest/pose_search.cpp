@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "fab/nest/mate.h"
+
 namespace leafcutter::fab {
 
 namespace {
@@ -13,16 +15,6 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-
-BandPoint point_at(const NestPart& part, double along) {
-    const auto count = static_cast<double>(part.middle.size());
-    const double length = part.middle.back().from_start + part.middle.front().from_start;
-    const double place = along / length * count - 0.5;
-    const auto index = static_cast<std::size_t>(std::clamp(place + 0.5, 0.0, count - 1.0));
-    BandPoint point = part.middle[index];
-    point.circle.centre += (place - static_cast<double>(index)) * length / count * point.along;
-    return point;
-}
 
 // `position` turned by `by_deg` about a point of the part.
 void turn_about(const Eigen::Vector2d& pivot, double by_deg, Position& position) {
@@ -101,65 +93,6 @@ void PoseSearch::sample_near(std::size_t item, const Position& around, Position&
     }
     position.x += random_.between(-0.5, 0.5) * width;
     position.y += random_.between(-0.5, 0.5) * height;
-}
-
-// Alongside another band of the same sheet: a stretch of the item's middle line is laid onto the
-// other's, moved sideways by both halves of a width, as well as least squares can.
-bool PoseSearch::sample_mate(std::size_t item, Position& position) {
-    const std::size_t other = random_.below(board_.items());
-    const NestPart& a = board_.plan().part(item);
-    const NestPart& b = board_.plan().part(other);
-    if (other == item || !b.is_band()) {
-        return false;
-    }
-    const Position& there = board_.position(other);
-    const double a_length = a.middle.back().from_start + a.middle.front().from_start;
-    const double b_length = b.middle.back().from_start + b.middle.front().from_start;
-    const bool backwards = random_.below(2) == 1;
-    const double side = random_.below(2) == 1 ? 1.0 : -1.0;
-    // Where the item's start lies along the other; at least a third of the shorter one overlaps.
-    const double overlap = std::min(a_length, b_length) / 3.0;
-    const double start = random_.between(overlap - a_length, b_length - overlap);
-    const double from = std::max(0.0, start);
-    const double to = std::min(b_length, start + a_length);
-    constexpr int kPoints = 6;
-    Eigen::Matrix<double, 2, kPoints> source;
-    Eigen::Matrix<double, 2, kPoints> target;
-    for (int i = 0; i < kPoints; ++i) {
-        const double on_b = from + (to - from) * (i + 0.5) / kPoints;
-        const double on_a = backwards ? a_length - (on_b - start) : on_b - start;
-        const BandPoint p = point_at(a, on_a);
-        const BandPoint q = point_at(b, on_b);
-        source.col(i) = p.circle.centre;
-        target.col(i) = q.circle.centre + side * 1.02 * (p.circle.radius + q.circle.radius) *
-                                              Eigen::Vector2d(-q.along.y(), q.along.x());
-    }
-    const Eigen::Vector2d source_mean = source.rowwise().mean();
-    const Eigen::Vector2d target_mean = target.rowwise().mean();
-    source.colwise() -= source_mean;
-    target.colwise() -= target_mean;
-    const double dot = source.cwiseProduct(target).sum();
-    const double cross =
-        (source.row(0).cwiseProduct(target.row(1)) - source.row(1).cwiseProduct(target.row(0)))
-            .sum();
-    double turn = std::atan2(cross, dot);
-    position.bin = there.bin;
-    position.turn = 0;
-    position.angle_deg = std::remainder(turn / kDegree + there.angle_deg, 360.0);
-    if (!a.allowed_deg.empty()) {
-        position.angle_deg = a.allowed_deg.nearest(position.angle_deg);
-        turn = (position.angle_deg - there.angle_deg) * kDegree;
-    }
-    const double c = std::cos(there.angle_deg * kDegree);
-    const double s = std::sin(there.angle_deg * kDegree);
-    // The item's origin in the other's frame, then on the sheet.
-    const Eigen::Vector2d at =
-        target_mean -
-        Eigen::Vector2d(std::cos(turn) * source_mean.x() - std::sin(turn) * source_mean.y(),
-                        std::sin(turn) * source_mean.x() + std::cos(turn) * source_mean.y());
-    position.x = there.x + c * at.x() - s * at.y();
-    position.y = there.y + s * at.x() + c * at.y();
-    return true;
 }
 
 // About which a part turns: its origin, or else a point of a band, or the centre about which a
@@ -294,8 +227,8 @@ Candidate PoseSearch::best_for(std::size_t item) {
     }
     if (part.is_band() && part.turns_freely()) {
         for (int i = 0; i < kMates; ++i) {
-            if (sample_mate(item, position)) {
-                consider(item, position);
+            if (const auto mate = random_mate(board_.plan(), item, random_)) {
+                consider(item, mated(board_, *mate));
             }
         }
     }
@@ -305,22 +238,34 @@ Candidate PoseSearch::best_for(std::size_t item) {
     return best;
 }
 
-std::vector<Candidate> PoseSearch::beside_others(std::size_t item, int tries) {
-    const double unit = step_unit(board_.plan().part(item), board_.shape(item));
+std::vector<Candidate> PoseSearch::beside_others(std::size_t item,
+                                                 int tries,
+                                                 const Position& from) {
+    constexpr int kMatched = 60;  // Stretches of others compared for one that is tried.
+    constexpr int kAnywhere = 20;
+    const NestPart& part = board_.plan().part(item);
+    const double unit = step_unit(part, board_.shape(item));
     forget_kept(unit);
     Position position;
     for (int i = 0; i < tries; ++i) {
-        if (sample_mate(item, position)) {
-            consider(item, position);
+        if (const auto mate = best_mate(board_.plan(), item, kMatched, random_)) {
+            position = mated(board_, *mate);
+            if (!is_same_place(part, position, from)) {
+                consider(item, position);
+            }
         }
     }
-    for (int i = 0; i < tries / 3; ++i) {
-        if (sample(item, position)) {
+    for (int i = 0; i < kAnywhere; ++i) {
+        if (sample(item, position) && !is_same_place(part, position, from)) {
             consider(item, position);
         }
     }
     descend_kept(item, unit);
-    return {kept_, kept_ + kept_count_};
+    std::vector<Candidate> found(kept_, kept_ + kept_count_);
+    std::erase_if(found, [&](const Candidate& candidate) {
+        return is_same_place(part, candidate.position, from);
+    });
+    return found;
 }
 
 Candidate PoseSearch::leftmost(std::size_t item, int samples) {

@@ -24,8 +24,9 @@ public:
     Candidate best_for(std::size_t item);
 
     // Up to three positions where the item, a band that turns freely, overlaps the least, best
-    // first: of `tries` beside other bands, and some anywhere.
-    std::vector<Candidate> beside_others(std::size_t item, int tries);
+    // first: of `tries` beside other bands that fit it well, and some anywhere; but none where it
+    // would lie mostly as it lies at `from`.
+    std::vector<Candidate> beside_others(std::size_t item, int tries, const Position& from);
 
     // A position inside a sheet without any overlap that lies as far left and low as `samples`
     // tries find, or one that overlaps (loss > 0) if there is none.
@@ -50,7 +51,6 @@ private:
 
     bool sample(std::size_t item, Position& position);
     void sample_near(std::size_t item, const Position& around, Position& position);
-    bool sample_mate(std::size_t item, Position& position);
     void random_turn(const NestPart& part, Position& position);
     Eigen::Vector2d pivot(const NestPart& part);
     void consider(std::size_t item, const Position& position);

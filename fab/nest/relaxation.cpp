@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "fab/nest/least_move.h"
+#include "fab/nest/random.h"
 
 namespace leafcutter::fab {
 
@@ -33,28 +35,60 @@ Relaxation::Relaxation(Board& board) : board_(board), contacts_(board) {
     }
 }
 
-bool Relaxation::relax(int steps) {
+bool Relaxation::relax(int steps, int kicks) {
     constexpr int kPatience = 4;  // Steps in which the deepest overlap must become 20 % less.
-    double before = 0.0;
+    double before = std::numeric_limits<double>::infinity();
     for (int step = 0;; ++step) {
         const std::vector<Contact>& contacts = find();
         const double now = deepest_of(contacts);
         if (now <= contacts_.clearance()) {
             return board_.clashes().empty();
         }
-        const bool counts = step % kPatience == 0;
-        if (step == steps || (counts && step > kPatience && now > 0.8 * before)) {
+        if (step == steps) {
             return false;
         }
-        before = counts ? now : before;
+        if (step % kPatience == 0 && now > 0.8 * before) {
+            if (kicks == 0) {
+                return false;
+            }
+            --kicks;
+            kick(contacts);
+            before = std::numeric_limits<double>::infinity();
+            continue;
+        }
+        before = step % kPatience == 0 ? now : before;
         apply(LeastMove(board_.items(), contacts, {}).solve());
     }
 }
 
-void Relaxation::make_room(int steps) {
-    for (int step = 0; step < steps; ++step) {
-        push_once(kSoft);
+// Where parts jam between walls at their full length, moves that free them gain nothing at first:
+// no linear problem knows of them. Those that overlap move a little, at random.
+void Relaxation::kick(const std::vector<Contact>& contacts) {
+    constexpr double kShare = 0.01;  // Of a width.
+    std::vector<bool> jammed(board_.items() + 2);
+    for (const Contact& contact : contacts) {
+        if (contact.want > contacts_.clearance()) {
+            jammed[contact.item] = true;
+            jammed[contact.other] = true;
+        }
     }
+    Random random(static_cast<std::uint64_t>(evaluations_));
+    Eigen::VectorXd move = Eigen::VectorXd::Zero(static_cast<Index>(3 * board_.items() + 1));
+    for (std::size_t item = 0; item < board_.items(); ++item) {
+        for (std::size_t i = 0; i < 3 && jammed[item]; ++i) {
+            move[static_cast<Index>(3 * item + i)] =
+                kShare * board_.plan().part(item).width * random.normal();
+        }
+    }
+    apply(move);
+}
+
+double Relaxation::make_room(int steps) {
+    double deepest = 0.0;
+    for (int step = 0; step < steps; ++step) {
+        deepest = push_once(kSoft);
+    }
+    return deepest;
 }
 
 void Relaxation::settle() {
@@ -63,14 +97,15 @@ void Relaxation::settle() {
 
 bool Relaxation::press() {
     constexpr int kSteps = 24;
+    constexpr int kKicks = 3;
     // Under less and less of a push overlaps become smaller than what counts.
-    for (const double push : {kSoft, 0.1 * kSoft, 0.01 * kSoft}) {
+    for (const double push : {0.1 * kSoft, 0.01 * kSoft}) {
         push_until_it_rests(push);
     }
     const double pressed = board_.extent().last_width;
-    for (const double slack : {0.0, 2e-4, 1e-3, 4e-3}) {
+    for (const double slack : {1e-4, 5e-4}) {
         board_.set_last_width(pressed * (1.0 + slack));
-        if (relax(kSteps)) {
+        if (relax(kSteps, kKicks)) {
             return true;
         }
     }
@@ -88,11 +123,14 @@ void Relaxation::push_until_it_rests(double push) {
     }
 }
 
-void Relaxation::push_once(double push) {
-    const Eigen::VectorXd move = LeastMove(board_.items(), find(), {push, trust_}).solve();
+double Relaxation::push_once(double push) {
+    const std::vector<Contact>& contacts = find();
+    const double deepest = deepest_of(contacts);
+    const Eigen::VectorXd move = LeastMove(board_.items(), contacts, {push, trust_}).solve();
     const double by = std::clamp(move[move.size() - 1], -2.0 * trust_, 2.0 * trust_);
     board_.set_last_width(board_.extent().last_width + by);
     apply(move);
+    return deepest;
 }
 
 double Relaxation::deepest() {

@@ -24,19 +24,22 @@ class Relaxation {
 public:
     explicit Relaxation(Board& board);
 
-    // Moves what lies on the board, `steps` times at most. True if then nothing overlaps; else the
-    // overlaps are too deep for small moves, or there is no room.
-    bool relax(int steps);
+    // Moves what lies on the board, `steps` times at most; what jams is knocked loose `kicks` times
+    // at most. True if then nothing overlaps; else the overlaps are too deep for small moves, or
+    // there is no room.
+    bool relax(int steps, int kicks = 0);
 
-    // Pushes the last sheet's right edge against the parts as far as it goes. True if then nothing
-    // overlaps; else nothing is known of what lies on the board.
-    bool press();
-
-    // The first, soft push of press(), which leaves small overlaps all over.
+    // Pushes the last sheet's right edge softly against the parts as far as it goes, which leaves
+    // small overlaps all over.
     void settle();
 
-    // Some steps of settle(): the edge gives way where a part has grown.
-    void make_room(int steps);
+    // After settle(): frees the parts of overlaps where the edge is now, or near it. False if they
+    // could not be; then nothing is known of what lies on the board.
+    bool press();
+
+    // Some steps of settle(): the edge gives way where a part has grown. By how much the least of
+    // all distances was too short before the last step.
+    double make_room(int steps);
 
     // By how much the least of all distances is too short.
     double deepest();
@@ -48,9 +51,10 @@ public:
     std::int64_t evaluations() const { return evaluations_; }
 
 private:
+    void kick(const std::vector<Contact>& contacts);
     const std::vector<Contact>& find();
     void apply(const Eigen::VectorXd& move);
-    void push_once(double push);
+    double push_once(double push);
     void push_until_it_rests(double push);
 
     Board& board_;

@@ -16,8 +16,8 @@ constexpr double kSlack = 0.03;          // Of the area, for a trial.
 constexpr std::int64_t kRound = 25'000;  // Evaluations of separation before all parts move at once.
 constexpr int kRounds = 6;
 constexpr int kRelaxSteps = 16;
-constexpr double kWorse = 0.004;    // Of the area, that may be lost at the beginning.
-constexpr double kFarthest = 0.01;  // From the best.
+constexpr double kWorse = 0.004;     // Of the area, that may be lost at the beginning.
+constexpr double kFarthest = 0.005;  // From the best.
 constexpr std::size_t kMostLaidAnew = 4;
 // Which of the two kinds of change yields more is learnt as the search goes on.
 constexpr double kHalfForgotten = 500'000.0;  // Evaluations.
@@ -47,21 +47,23 @@ void ShakeAndPress::advance(std::int64_t evaluations,
                             double progress,
                             const std::stop_token& stop) {
     progress_ = progress;
-    const std::int64_t until = this->evaluations() + evaluations;
-    while (this->evaluations() < until) {
+    until_ += evaluations;
+    while (this->evaluations() < until_) {
         if (stop.stop_requested()) {
             throw geometry::Cancelled();
         }
         if (current_.area > best_.area * (1.0 + kFarthest)) {
             current_ = best_;
         }
-        const bool shakes = shakes_next();
+        const bool shakes = rounds_left_ > 0 || shakes_next();
         const double area = best_.area;
         const std::int64_t before = this->evaluations();
-        if (shakes) {
-            shake(stop);
-        } else {
+        if (!shakes) {
             insert();
+        } else if (rounds_left_ > 0) {
+            shake_on(stop);
+        } else {
+            begin_shaking();
         }
         (shakes ? shaking_ : inserting_)
             .add((area - best_.area) / area, static_cast<double>(this->evaluations() - before));
@@ -88,22 +90,11 @@ void ShakeAndPress::insert() {
     if (current_.settled.positions.empty()) {
         current_.settled = insertion_.settle(current_.packing);
     }
-    if (auto found = insertion_.attempt(current_.settled)) {
-        judge({found->packing, area_taken(plan_, found->packing.extent), found->settled});
+    const double worse = tolerance();
+    if (auto found = insertion_.attempt(current_.settled, worse)) {
+        const double area = area_taken(plan_, found->packing.extent);
+        judge({std::move(found->packing), area, std::move(found->settled)}, worse);
     }
-}
-
-void ShakeAndPress::shake(const std::stop_token& stop) {
-    begin_shaking();
-    if (!is_freed(stop)) {
-        return;
-    }
-    Packing found{board_.positions(), board_.extent()};
-    if (relaxation_.press()) {
-        found = {board_.positions(), board_.extent()};
-    }
-    const double area = area_taken(plan_, found.extent);
-    judge({std::move(found), area, {}});
 }
 
 // Places spread with the sheet's edge as it makes room.
@@ -125,6 +116,8 @@ void ShakeAndPress::begin_shaking() {
     }
     first_ = false;
     separation_.begin({1, 30});
+    rounds_left_ = kRounds;
+    round_end_ = board_.evaluations() + kRound;
 }
 
 // A part and some of those near it, one after the other where it overlaps least.
@@ -155,33 +148,48 @@ void ShakeAndPress::lay_anew() {
     }
 }
 
-bool ShakeAndPress::is_freed(const std::stop_token& stop) {
-    for (int round = 0; round < kRounds; ++round) {
-        const auto state = separation_.run(board_.evaluations() + kRound, stop);
-        if (state == Separation::State::Feasible) {
-            return true;
-        }
-        const std::vector<Position> before = board_.positions();
-        if (relaxation_.relax(kRelaxSteps)) {
-            return true;
-        }
-        if (state == Separation::State::GaveUp) {
-            return false;
-        }
-        for (std::size_t item = 0; item < before.size(); ++item) {
-            board_.move(item, before[item]);
-        }
+// Frees what was shaken of overlaps, until that is done or the work asked for is.
+void ShakeAndPress::shake_on(const std::stop_token& stop) {
+    const std::int64_t work_left = until_ - evaluations();
+    const auto state =
+        separation_.run(std::min(round_end_, board_.evaluations() + work_left), stop);
+    if (state == Separation::State::Working && board_.evaluations() < round_end_) {
+        return;
     }
-    return false;
+    const std::vector<Position> before = board_.positions();
+    if (state == Separation::State::Feasible || relaxation_.relax(kRelaxSteps)) {
+        rounds_left_ = 0;
+        press_shaken();
+        return;
+    }
+    rounds_left_ = state == Separation::State::GaveUp ? 0 : rounds_left_ - 1;
+    round_end_ = board_.evaluations() + kRound;
+    for (std::size_t item = 0; item < before.size(); ++item) {
+        board_.move(item, before[item]);
+    }
 }
 
-void ShakeAndPress::judge(Layout pressed) {
+void ShakeAndPress::press_shaken() {
+    Packing found{board_.positions(), board_.extent()};
+    relaxation_.settle();
+    if (relaxation_.press()) {
+        found = {board_.positions(), board_.extent()};
+    }
+    const double area = area_taken(plan_, found.extent);
+    judge({std::move(found), area, {}}, tolerance());
+}
+
+// A share of the area; less and less as the search goes on.
+double ShakeAndPress::tolerance() {
+    return kWorse * std::max(0.0, 1.0 - progress_) * std::abs(random_.normal());
+}
+
+void ShakeAndPress::judge(Layout pressed, double worse) {
     const BoardPlan::Room& last =
         plan_.rooms[static_cast<std::size_t>(pressed.packing.extent.bins) - 1];
     if (pressed.packing.extent.last_width > last.width) {
         return;
     }
-    const double worse = kWorse * std::max(0.0, 1.0 - progress_) * std::abs(random_.normal());
     if (pressed.area < best_.area) {
         best_ = pressed;
     }

@@ -51,11 +51,12 @@ private:
 
     bool shakes_next() const;
     void insert();
-    void shake(const std::stop_token& stop);
     void begin_shaking();
     void lay_anew();
-    bool is_freed(const std::stop_token& stop);
-    void judge(Layout pressed);
+    void shake_on(const std::stop_token& stop);
+    void press_shaken();
+    double tolerance();
+    void judge(Layout pressed, double worse);
 
     const BoardPlan& plan_;
     Random random_;
@@ -68,7 +69,10 @@ private:
     Layout best_;
     Layout current_;  // What is changed next.
     double progress_ = 0.0;
-    bool first_ = true;  // Nothing was shaken yet.
+    std::int64_t until_ = 0;      // Work asked for so far.
+    bool first_ = true;           // Nothing was shaken yet.
+    int rounds_left_ = 0;         // Of the shaking under way; 0: none is.
+    std::int64_t round_end_ = 0;  // In the board's evaluations.
     Yield inserting_;
     Yield shaking_;
 };

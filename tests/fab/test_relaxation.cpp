@@ -8,6 +8,7 @@
 
 #include "fab/nest/contacts.h"
 #include "fab/nest/insertion.h"
+#include "fab/nest/mate.h"
 #include "fab/nest/nearest_edge.h"
 #include "fab/nest/relaxation.h"
 
@@ -167,6 +168,22 @@ TEST(Relaxation, FreesRectanglesThatLieEdgeByEdge) {
     EXPECT_TRUE(Relaxation(board).relax(30));
 }
 
+// Its diagonal stands upright: turned either way it is lower, but not at first.
+TEST(Relaxation, KnocksLooseWhatJamsAtItsFullLength) {
+    const BoardPlan plan = plan_of(1, 100.48);
+    Board board(plan);
+    std::vector<Position> positions(1);
+    positions[0].x = 50.0;
+    positions[0].y = 50.24;
+    positions[0].angle_deg = std::atan2(10.0, 100.0) * 180.0 / std::numbers::pi;
+    board.restore(positions, {1, 100.0});
+    ASSERT_FALSE(board.clashes().empty());
+    EXPECT_FALSE(Relaxation(board).relax(24));
+    board.restore(positions, {1, 100.0});
+    EXPECT_TRUE(Relaxation(board).relax(16, 3));
+    EXPECT_TRUE(board.clashes().empty());
+}
+
 TEST(Relaxation, SaysSoWhereThereIsNoRoom) {
     const BoardPlan plan = plan_of(20, 120.0);
     Board board(plan);
@@ -184,7 +201,10 @@ TEST(Relaxation, PressesARowUntilAllTouch) {
     }
     board.restore(positions, {1, 300.0});
     ASSERT_TRUE(board.clashes().empty());
-    EXPECT_TRUE(Relaxation(board).press());
+    Relaxation relaxation(board);
+    relaxation.settle();
+    EXPECT_LT(board.extent().last_width, 200.0);
+    EXPECT_TRUE(relaxation.press());
     EXPECT_TRUE(board.clashes().empty());
     EXPECT_NEAR(board.extent().last_width, 200.0, 0.5);
     EXPECT_GE(board.extent().last_width, 200.0);
@@ -219,10 +239,60 @@ TEST(Relaxation, TurnsOnlyAsFarAsAPartMay) {
     positions[0].angle_deg = 1.0;
     positions[1].angle_deg = -1.0;
     board.restore(positions, {1, 40.0});
-    Relaxation(board).press();
+    Relaxation relaxation(board);
+    relaxation.settle();
+    relaxation.press();
     for (const Position& at : board.positions()) {
         EXPECT_LE(std::abs(at.angle_deg), 1.0 + 1e-9);
     }
+}
+
+TEST(Mate, LiesAlongTheOtherAndTouchesIt) {
+    BoardPlan plan = plan_of(2, 400.0);
+    plan.parts[0] = make_part(bent_band(), 0.0, {});
+    Board board(plan);
+    Random random(7);
+    for (int tries = 0; tries < 50; ++tries) {
+        std::vector<Position> positions(2);
+        positions[1].x = random.between(150.0, 250.0);
+        positions[1].y = random.between(150.0, 250.0);
+        positions[1].angle_deg = random.between(-180.0, 180.0);
+        board.restore(positions, {1, 400.0});
+        const auto mate = best_mate(plan, 0, 200, random);
+        ASSERT_TRUE(mate);
+        EXPECT_EQ(mate->item, 0U);
+        EXPECT_EQ(mate->other, 1U);
+        EXPECT_GT(mate->overlap, 45.0);  // A third of its length.
+        EXPECT_LT(mate->misfit, 5.0);
+        board.move(0, mated(board, *mate));
+        const std::vector<Contact> contacts = Contacts(board).find();
+        ASSERT_FALSE(contacts.empty());
+        for (const Contact& contact : contacts) {
+            EXPECT_LT(contact.want, 5.0);
+        }
+    }
+}
+
+TEST(Mate, IsNobodysWhereNobodyElseIsABand) {
+    const BoardPlan plan = plan_of(1, 400.0);
+    Random random(7);
+    EXPECT_FALSE(best_mate(plan, 0, 20, random));
+}
+
+TEST(Mate, ABandThatSlidAlongItselfIsWhereItWas) {
+    const NestPart band = make_part(bent_band(), 0.0, {});
+    Position at;
+    at.angle_deg = 30.0;
+    EXPECT_TRUE(is_same_place(band, at, at));
+    Position aside = at;
+    aside.x += 4.0;
+    EXPECT_TRUE(is_same_place(band, aside, at));
+    aside.x += 26.0;
+    aside.y += 26.0;
+    EXPECT_FALSE(is_same_place(band, aside, at));
+    Position other_sheet = at;
+    other_sheet.bin = 1;
+    EXPECT_FALSE(is_same_place(band, other_sheet, at));
 }
 
 // Two rows of bands, the upper one with a hole: a band of the last column fits there.
@@ -244,7 +314,7 @@ TEST(Insertion, TakesABandToWhereThereIsRoom) {
     EXPECT_LE(settled.extent.last_width, start.extent.last_width);
     double least = start.extent.last_width;
     for (int tries = 0; tries < 100; ++tries) {
-        if (const auto pressed = insertion.attempt(settled)) {
+        if (const auto pressed = insertion.attempt(settled, 0.002)) {
             board.restore(pressed->packing.positions, pressed->packing.extent);
             ASSERT_TRUE(board.clashes().empty());
             EXPECT_LE(pressed->settled.extent.last_width, 1.01 * settled.extent.last_width);
