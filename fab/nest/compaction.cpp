@@ -21,9 +21,8 @@ constexpr std::int64_t kEpoch = 20'000;
 constexpr std::int64_t kPressedEpoch = 200'000;
 constexpr double kSharedFrom = 0.5;  // From then on none stays behind,
 constexpr double kBehind = 0.003;    // by more than this share of the area.
-// How dense long bands come to lie is mostly a matter of luck at the start: more of them begin than
-// go on.
-constexpr std::size_t kStarts = 2;  // For one that goes on.
+// How dense long bands come to lie is a matter of luck at the start: some of the searches that
+// began go on from here.
 constexpr double kChosenAt = 0.12;
 
 // The narrowest box any part can have.
@@ -243,7 +242,7 @@ Packing compact(const BoardPlan& plan,
                 const std::function<bool(const Packing&)>& accept) {
     const bool presses = is_for_presses(plan);
     Searches searches =
-        make_searches(plan, start, options.searches * (presses ? kStarts : 1), options.seed);
+        make_searches(plan, start, options.searches * (presses ? options.starts : 1), options.seed);
     Packing best = std::move(start);
     double best_area = area_taken(plan, best.extent);
     const double begun_s = context.now_s();

@@ -31,6 +31,7 @@ struct CompactionOptions {
     std::int64_t max_evaluations = 2'000'000;  // Of all searches together.
     double time_s = 0.0;                       // By the context's clock; 0: no limit.
     std::size_t searches = 2;                  // From the same start, at least 1.
+    std::size_t starts = 2;  // Of bands, for each of these: the best go on. More need more time.
 };
 
 struct FirstOptions {

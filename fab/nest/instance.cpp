@@ -233,7 +233,7 @@ void for_both(std::size_t first, std::size_t second, bool at_once, Work work) {
 }
 
 // The stretches are searched with equal shares of the work: few one by one, each by two searches,
-// many in pairs, by one search each.
+// many in pairs, by one search each from one start, since they have little time.
 Packing compact_stretches(const BoardPlan& plan,
                           const Packing& start,
                           const CompactionOptions& options,
@@ -246,6 +246,7 @@ Packing compact_stretches(const BoardPlan& plan,
     const bool at_once = step == 2 && context.threads > 1;
     CompactionOptions share = options;
     share.searches = step == 2 ? 1 : options.searches;
+    share.starts = step == 2 ? 1 : options.starts;
     share.max_evaluations = options.max_evaluations / start.extent.bins;
     const double rounds = std::ceil(static_cast<double>(count) / (at_once ? 2.0 : 1.0));
     share.time_s = options.time_s / rounds;
