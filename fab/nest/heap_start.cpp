@@ -73,14 +73,15 @@ public:
         }
     }
 
-    void run(std::int64_t rows) {
+    void run(std::int64_t rows, const std::vector<std::size_t>& order) {
         constexpr std::array<double, 3> kTopWeights{0.0, 0.5, 0.25};
         constexpr std::size_t kMostRounds = 200;
         for (std::size_t round = 0; round < kMostRounds && (round == 0 || rows_ < rows); ++round) {
             try {
-                attempt(round < kTopWeights.size()
-                            ? Recipe{longest_first(shapes_), kTopWeights[round]}
-                            : varied());
+                attempt(
+                    round < kTopWeights.size()
+                        ? Recipe{order.empty() ? longest_first(shapes_) : order, kTopWeights[round]}
+                        : varied());
             } catch (const geometry::Cancelled&) {
                 if (best_.laid.empty() && best_.left_over.empty()) {
                     throw;
@@ -174,9 +175,10 @@ private:
 HeapStart heap_start(const BoardPlan& plan,
                      std::int64_t rows,
                      std::uint64_t seed,
-                     const geometry::Context& context) {
+                     const geometry::Context& context,
+                     const std::vector<std::size_t>& order) {
     HeapSearch search(plan, seed, context);
-    search.run(rows);
+    search.run(rows, order);
     return {search.packing(plan), search.rows()};
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 
+#include "fab/nest/bend_order.h"
 #include "fab/nest/heap_start.h"
 #include "fab/nest/instance_bins.h"
 #include "fab/nest/instance_check.h"
@@ -117,6 +118,15 @@ bool all_fit(const BoardPlan& plan) {
     });
 }
 
+// Of a long strip: what bends alike is laid on the same sheet, or near each other.
+std::vector<std::size_t> heap_order(const BoardPlan& plan, double area) {
+    constexpr double kFilled = 0.5;  // Of a sheet, by a heap.
+    constexpr std::size_t kLeast = 8;
+    const BoardPlan::Room& sheet = plan.rooms.front();
+    const auto sheets = static_cast<std::size_t>(area / (kFilled * sheet.width * sheet.height));
+    return sheets < 2 ? std::vector<std::size_t>{} : by_bend(plan, std::max(sheets, kLeast));
+}
+
 // Heaps on sheets as wide as a strip is searched at once: a raster of an endless strip would be
 // coarse, and a search that moves everything at once would get nowhere.
 Packing banded_layout(BoardPlan& plan,
@@ -132,7 +142,7 @@ Packing banded_layout(BoardPlan& plan,
     const double wanted =
         std::max(1.5 * longest, std::min(3.0 * area / endless.height, 2.0 * endless.height));
     plan.rooms.front().width = std::min(endless.width, wanted);
-    Packing packing = heap_start(plan, 1, options.seed, context).packing;
+    Packing packing = heap_start(plan, 1, options.seed, context, heap_order(plan, area)).packing;
     plan.rooms.assign(static_cast<std::size_t>(packing.extent.bins), plan.rooms.front());
     return packing;
 }
