@@ -16,7 +16,6 @@ namespace leafcutter::fab {
 
 namespace {
 
-// Evaluations of each search between two exchanges. Presses take many at once.
 constexpr std::int64_t kEpoch = 20'000;
 constexpr std::int64_t kPressedEpoch = 200'000;
 constexpr double kSharedFrom = 0.5;  // From then on none stays behind,
@@ -60,6 +59,13 @@ Searches make_searches(const BoardPlan& plan,
         }
     }
     return searches;
+}
+
+// Evaluations of each search between two exchanges. Presses take many at once, and threads wait for
+// each other after each epoch; but a short search must end in time.
+std::int64_t epoch_of(const Searches& searches, bool presses, std::int64_t spent) {
+    const auto count = static_cast<std::int64_t>(searches.size());
+    return presses ? std::clamp(spent / (10 * count), kEpoch, kPressedEpoch) : kEpoch;
 }
 
 // Runs all searches for an epoch, on as many threads as allowed.
@@ -246,7 +252,6 @@ Packing compact(const BoardPlan& plan,
     Packing best = std::move(start);
     double best_area = area_taken(plan, best.extent);
     const double begun_s = context.now_s();
-    const std::int64_t epoch = presses ? kPressedEpoch : kEpoch;
     std::int64_t given_up = 0;
     std::int64_t spent = 0;
     std::int64_t idle_epochs = 0;
@@ -263,6 +268,7 @@ Packing compact(const BoardPlan& plan,
             context.report("nest", progress);
             const std::int64_t left =
                 (options.max_evaluations - spent) / static_cast<std::int64_t>(searches.size()) + 1;
+            const std::int64_t epoch = epoch_of(searches, presses, spent);
             run_epoch(searches, std::min(epoch, left), progress, context);
         } catch (const geometry::Cancelled&) {
             return best;
