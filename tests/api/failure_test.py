@@ -58,11 +58,10 @@ class FailureTest(unittest.TestCase):
             self.assertTrue(self.world.start())
             first = self.ended(self.submit("first"))
             filler = state / "filler"
-            with filler.open("wb") as out:
+            with filler.open("wb", buffering=0) as out:  # A buffer would be written again on closing.
                 try:
                     while True:
                         out.write(bytes(65536))
-                        out.flush()
                 except OSError:
                     pass
             other = PLATE + b"\n"
