@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "fab/cut/stroke_lines.h"
+#include "fab/point_pairs.h"
 #include "fab/strips/labels.h"
 
 namespace leafcutter::fab {
@@ -98,45 +99,20 @@ TextPose pose_of(const StrokeLine& line, const StrokeLine& burnt) {
     return pose;
 }
 
-// Least squares over pairs of points, added one after the other.
-class PoseFit {
-public:
-    void add(const Vector2d& font_point, const Vector2d& burnt) {
-        ++count_;
-        font_sum_ += font_point;
-        burnt_sum_ += burnt;
-        square_ += font_point.squaredNorm();
-        dot_ += font_point.dot(burnt);
-        cross_ += font_point.x() * burnt.y() - font_point.y() * burnt.x();
-    }
-
-    TextPose pose() const {
-        const Vector2d p = font_sum_ / count_;
-        const Vector2d q = burnt_sum_ / count_;
-        const double square = square_ - count_ * p.squaredNorm();
-        TextPose pose;
-        pose.along =
-            Vector2d(dot_ - count_ * p.dot(q), cross_ - count_ * (p.x() * q.y() - p.y() * q.x())) /
-            square;
-        pose.at = q - (pose.apply(p) - pose.at);
-        return pose;
-    }
-
-private:
-    double count_ = 0.0;
-    Vector2d font_sum_ = Vector2d::Zero();
-    Vector2d burnt_sum_ = Vector2d::Zero();
-    double square_ = 0.0;
-    double dot_ = 0.0;
-    double cross_ = 0.0;
-};
+// The pose that takes points of the font to burnt ones.
+TextPose pose_of(const PointPairs& pairs) {
+    TextPose pose;
+    pose.along = pairs.products() / pairs.from_squares();
+    pose.at = pairs.to() - (pose.apply(pairs.from()) - pose.at);
+    return pose;
+}
 
 // A text as it is being read.
 struct Candidate {
     std::string text;
     double left = 0.0;   // Pen positions, in the font's units, from the seed's.
     double right = 0.0;  // Behind the last letter and its gap.
-    PoseFit fit;
+    PointPairs fit;
     std::vector<std::size_t> lines;
 };
 
@@ -187,7 +163,7 @@ public:
 
 private:
     static ReadText text_of(const Candidate& candidate) {
-        const TextPose pose = candidate.fit.pose();
+        const TextPose pose = pose_of(candidate.fit);
         ReadText text;
         text.text = candidate.text;
         text.at = pose.apply({candidate.left, 0.0});
@@ -273,7 +249,7 @@ private:
         for (const bool blank : {false, true}) {
             const double x = candidate.right + (blank ? blank_advance() : 0.0);
             for (const Template& glyph : templates()) {
-                if (add_letter(glyph, {candidate.fit.pose(), x}, candidate)) {
+                if (add_letter(glyph, {pose_of(candidate.fit), x}, candidate)) {
                     candidate.text =
                         fmt::format("{}{}{}", candidate.text, blank ? " " : "", glyph.letter);
                     candidate.right = x + glyph.advance;
@@ -289,7 +265,7 @@ private:
             const double end = candidate.left - (blank ? blank_advance() : 0.0);
             for (const Template& glyph : templates()) {
                 const double x = end - glyph.advance;
-                if (add_letter(glyph, {candidate.fit.pose(), x}, candidate)) {
+                if (add_letter(glyph, {pose_of(candidate.fit), x}, candidate)) {
                     candidate.text =
                         fmt::format("{}{}{}", glyph.letter, blank ? " " : "", candidate.text);
                     candidate.left = x;

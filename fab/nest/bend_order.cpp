@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "fab/nest/shape.h"
+
 namespace leafcutter::fab {
 
 BandBend bend_of(const NestPart& part) {
@@ -13,7 +15,7 @@ BandBend bend_of(const NestPart& part) {
     const auto turn = [&](std::size_t from, std::size_t to) {
         const Eigen::Vector2d& a = part.middle[from].along;
         const Eigen::Vector2d& b = part.middle[to].along;
-        return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+        return std::atan2(turn_of(a, b), a.dot(b));
     };
     const std::size_t last = part.middle.size() - 1;
     const double first_half = turn(0, last / 2);

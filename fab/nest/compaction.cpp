@@ -48,14 +48,16 @@ using Searches = std::vector<std::unique_ptr<Search>>;
 
 Searches make_searches(const BoardPlan& plan,
                        const Packing& start,
-                       std::size_t count,
-                       std::uint64_t seed) {
+                       bool presses,
+                       const CompactionOptions& options) {
+    const std::size_t count = options.searches * (presses ? options.starts : 1);
     Searches searches;
     for (std::size_t i = 0; i < count; ++i) {
-        if (is_for_presses(plan)) {
-            searches.push_back(std::make_unique<ShakeAndPress>(plan, start, seed * 7919 + i));
+        const std::uint64_t seed = options.seed * 7919 + i;
+        if (presses) {
+            searches.push_back(std::make_unique<ShakeAndPress>(plan, start, seed));
         } else {
-            searches.push_back(std::make_unique<Explorer>(plan, start, seed * 7919 + i));
+            searches.push_back(std::make_unique<Explorer>(plan, start, seed));
         }
     }
     return searches;
@@ -107,12 +109,12 @@ std::int64_t evaluations_of(const Searches& searches) {
     return sum;
 }
 
-// Only the best go on. Returns the work of the others.
+// Only the best `count` go on. Returns the work of the others.
 std::int64_t choose(Searches& searches, std::size_t count) {
     const std::int64_t before = evaluations_of(searches);
     std::stable_sort(searches.begin(), searches.end(),
                      [](const auto& a, const auto& b) { return a->best_area() < b->best_area(); });
-    searches.resize(std::min(count, searches.size()));
+    searches.resize(count);
     return before - evaluations_of(searches);
 }
 
@@ -247,8 +249,7 @@ Packing compact(const BoardPlan& plan,
                 const geometry::Context& context,
                 const std::function<bool(const Packing&)>& accept) {
     const bool presses = is_for_presses(plan);
-    Searches searches =
-        make_searches(plan, start, options.searches * (presses ? options.starts : 1), options.seed);
+    Searches searches = make_searches(plan, start, presses, options);
     Packing best = std::move(start);
     double best_area = area_taken(plan, best.extent);
     const double begun_s = context.now_s();
@@ -288,7 +289,7 @@ Packing compact(const BoardPlan& plan,
         if (progress >= kSharedFrom) {
             catch_up(searches, best, best_area, presses ? kBehind : 0.0);
         }
-        if (progress >= kChosenAt) {
+        if (progress >= kChosenAt && searches.size() > options.searches) {
             given_up += choose(searches, options.searches);
         }
     }

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include <Eigen/Geometry>
+
+#include "fab/nest/shape.h"
 
 namespace leafcutter::fab {
 
@@ -14,20 +15,13 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 // What lies nearer than this share of a part's width may come to touch in a step.
 constexpr double kReach = 0.4;
 // What lies nearer than this share more is kept in mind.
 constexpr double kMargin = 0.4;
 
-// A vector's first derivative as it turns, along `normal`.
-double lever(const Vector2d& arm, const Vector2d& normal) {
-    return arm.x() * normal.y() - arm.y() * normal.x();
-}
-
 Vector3d gain(const Vector2d& normal, const Vector2d& arm, double turn) {
-    return {normal.x(), normal.y(), lever(arm, normal) * turn};
+    return {normal.x(), normal.y(), turn_of(arm, normal) * turn};
 }
 
 }  // namespace
@@ -99,7 +93,7 @@ bool Contacts::may_touch(std::size_t item, std::size_t other) const {
 Contacts::Relative Contacts::relative(std::size_t item, std::size_t other) const {
     const Vector2d off = lying_[item].at - lying_[other].at;
     const Vector2d& along = lying_[other].along;
-    return {{along.dot(off), along.x() * off.y() - along.y() * off.x()},
+    return {{along.dot(off), turn_of(along, off)},
             lying_[item].angle_deg - lying_[other].angle_deg};
 }
 

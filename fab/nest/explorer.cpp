@@ -92,9 +92,7 @@ void Explorer::begin_exploring() {
         return;
     }
     // One of those that came near, a good one more likely, with two large parts swapped.
-    const double pick = std::min(0.25 * std::abs(random_.normal()), 0.999);
-    const auto index = static_cast<std::size_t>(pick * static_cast<double>(failed_.size()));
-    std::vector<Position> positions = failed_[index].positions;
+    std::vector<Position> positions = failed_[random_.early(failed_.size(), 0.25)].positions;
     swap_.apply(positions, random_);
     attempt(std::move(positions), target_, target_, middle);
 }

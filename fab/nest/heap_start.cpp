@@ -76,12 +76,10 @@ public:
     void run(std::int64_t rows, const std::vector<std::size_t>& order) {
         constexpr std::array<double, 3> kTopWeights{0.0, 0.5, 0.25};
         constexpr std::size_t kMostRounds = 200;
+        const std::vector<std::size_t> first = order.empty() ? longest_first(shapes_) : order;
         for (std::size_t round = 0; round < kMostRounds && (round == 0 || rows_ < rows); ++round) {
             try {
-                attempt(
-                    round < kTopWeights.size()
-                        ? Recipe{order.empty() ? longest_first(shapes_) : order, kTopWeights[round]}
-                        : varied());
+                attempt(round < kTopWeights.size() ? Recipe{first, kTopWeights[round]} : varied());
             } catch (const geometry::Cancelled&) {
                 if (best_.laid.empty() && best_.left_over.empty()) {
                     throw;

@@ -14,8 +14,8 @@ constexpr int kMeasured = 2;       // Of which seams are measured.
 constexpr double kThinnest = 0.2;  // Share of the width, at the first stage.
 constexpr int kSteps = 2;          // Of all parts, at each stage.
 constexpr int kTries = 60;         // Seams looked at.
-constexpr int kParted = 2;         // The stage by which others have made way,
 constexpr double kLost = 3e-4;     // Of the layout's width: what a push leaves open.
+constexpr int kParted = 2;         // The stage by which others have made way,
 constexpr double kCrossed = 0.15;  // or lie across if they overlap by this share of a width still.
 constexpr double kDeepest = 0.06;  // Likewise at the end.
 
@@ -98,12 +98,8 @@ std::optional<Insertion::Pressed> Insertion::attempt(const Packing& settled, dou
     const std::size_t item = bands_[random_.below(bands_.size())];
     const double widest = settled.extent.last_width * (1.0 + std::max(kLost, wider));
     const std::optional<Position> to = elsewhere(item);
-    if (!to) {
+    if (!to || !grow(item, *to, widest)) {
         set_stage(item, kStages - 1);
-        return std::nullopt;
-    }
-    board_.move(item, *to);
-    if (!grow(item, widest)) {
         return std::nullopt;
     }
     relaxation_.settle();
@@ -138,19 +134,17 @@ std::optional<Position> Insertion::elsewhere(std::size_t item) {
     if (found.empty()) {
         return std::nullopt;
     }
-    const double pick = std::min(0.3 * std::abs(random_.normal()), 0.999);
-    return found[static_cast<std::size_t>(pick * static_cast<double>(found.size()))].position;
+    return found[random_.early(found.size(), 0.3)].position;
 }
 
-// False, with the item at full width all the same, if the others would need more than `widest` or
-// do not part.
-bool Insertion::grow(std::size_t item, double widest) {
+// False if the others would need more than `widest` or do not part.
+bool Insertion::grow(std::size_t item, const Position& at, double widest) {
+    board_.move(item, at);
     const double crossed = kCrossed * plan_.parts[whole_[item]].width;
     for (int stage = 0; stage < kStages; ++stage) {
         set_stage(item, stage);
         const double deepest = relaxation_.make_room(kSteps);
         if (board_.extent().last_width > widest || (stage >= kParted && deepest > crossed)) {
-            set_stage(item, kStages - 1);
             return false;
         }
     }

@@ -39,7 +39,7 @@ public:
 private:
     void set_stage(std::size_t item, int stage);
     std::optional<Position> elsewhere(std::size_t item);
-    bool grow(std::size_t item, double widest);
+    bool grow(std::size_t item, const Position& at, double widest);
     Packing laid() const { return {board_.positions(), board_.extent()}; }
 
     BoardPlan plan_;                  // With bands of less width; which one an item is changes.

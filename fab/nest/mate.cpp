@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Geometry>
+
+#include "fab/point_pairs.h"
 
 namespace leafcutter::fab {
 
@@ -12,15 +13,10 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr int kPoints = 6;       // Of a stretch.
 constexpr double kApart = 1.02;  // In halves of both widths.
-constexpr double kRoughness =
-    0.1;  // Of a width, added to a misfit: of two that fit the longer one.
-
-double length_of(const NestPart& part) {
-    return part.middle.back().from_start + part.middle.front().from_start;
-}
+// Of a width, added to a misfit: of two that fit the longer one.
+constexpr double kRoughness = 0.1;
 
 // Points of a middle line at even steps.
 class MiddleWalk {
@@ -42,40 +38,16 @@ private:
     double spacing_;
 };
 
-double cross(const Vector2d& a, const Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
+// Without a change of size.
+void fit(const PointPairs& pairs, Mate& mate) {
+    mate.from = pairs.from();
+    mate.to = pairs.to();
+    const Vector2d turn = pairs.products();
+    const double norm = turn.norm();
+    mate.turn = norm > 0.0 ? Vector2d(turn / norm) : Vector2d::UnitX();
+    const double left = pairs.from_squares() + pairs.to_squares() - 2.0 * norm;
+    mate.misfit = std::sqrt(std::max(0.0, left) / pairs.count());
 }
-
-// Which points go where, summed up for the least squares.
-struct Match {
-    Vector2d from = Vector2d::Zero();
-    Vector2d to = Vector2d::Zero();
-    double squares = 0.0;
-    double dots = 0.0;
-    double crosses = 0.0;
-
-    void add(const Vector2d& p, const Vector2d& q) {
-        from += p;
-        to += q;
-        squares += p.squaredNorm() + q.squaredNorm();
-        dots += p.dot(q);
-        crosses += cross(p, q);
-    }
-
-    // Umeyama, "Least-squares estimation of transformation parameters between two point patterns",
-    // IEEE PAMI 13(4), 1991, in the plane.
-    void fit(Mate& mate) const {
-        mate.from = from / kPoints;
-        mate.to = to / kPoints;
-        const Vector2d turn(dots - kPoints * mate.from.dot(mate.to),
-                            crosses - kPoints * cross(mate.from, mate.to));
-        const double norm = turn.norm();
-        mate.turn = norm > 0.0 ? Vector2d(turn / norm) : Vector2d::UnitX();
-        const double left =
-            squares - kPoints * (mate.from.squaredNorm() + mate.to.squaredNorm()) - 2.0 * norm;
-        mate.misfit = std::sqrt(std::max(0.0, left) / kPoints);
-    }
-};
 
 }  // namespace
 
@@ -88,8 +60,8 @@ std::optional<Mate> random_mate(const BoardPlan& plan, std::size_t item, Random&
     if (mate.other == item || !b.is_band()) {
         return std::nullopt;
     }
-    const double a_length = length_of(a);
-    const double b_length = length_of(b);
+    const double a_length = a.middle_length();
+    const double b_length = b.middle_length();
     const bool backwards = random.below(2) == 1;
     const double side = random.below(2) == 1 ? kApart : -kApart;
     // Where the item's start lies along the other; at least a third of the shorter one overlaps.
@@ -99,15 +71,15 @@ std::optional<Mate> random_mate(const BoardPlan& plan, std::size_t item, Random&
     mate.overlap = std::min(b_length, start + a_length) - from;
     const MiddleWalk on_a(a, a_length);
     const MiddleWalk on_b(b, b_length);
-    Match match;
+    PointPairs pairs;
     for (int i = 0; i < kPoints; ++i) {
         const double along = from + mate.overlap * (i + 0.5) / kPoints;
         const BandPoint p = on_a.at(backwards ? a_length - (along - start) : along - start);
         const BandPoint q = on_b.at(along);
-        match.add(p.circle.centre, q.circle.centre + side * (p.circle.radius + q.circle.radius) *
+        pairs.add(p.circle.centre, q.circle.centre + side * (p.circle.radius + q.circle.radius) *
                                                          Vector2d(-q.along.y(), q.along.x()));
     }
-    match.fit(mate);
+    fit(pairs, mate);
     return mate;
 }
 
@@ -155,14 +127,10 @@ Position mated(const Board& board, const Mate& mate) {
         turn = (position.angle_deg - there.angle_deg) * kDegree;
     }
     // The item's origin in the other's frame, then on the sheet.
-    const double c = std::cos(turn);
-    const double s = std::sin(turn);
-    const Vector2d at = mate.to - Vector2d(c * mate.from.x() - s * mate.from.y(),
-                                           s * mate.from.x() + c * mate.from.y());
-    const double along = std::cos(there.angle_deg * kDegree);
-    const double up = std::sin(there.angle_deg * kDegree);
-    position.x = there.x + along * at.x() - up * at.y();
-    position.y = there.y + up * at.x() + along * at.y();
+    const Vector2d origin = mate.to - Eigen::Rotation2Dd(turn) * mate.from;
+    const Vector2d at = Eigen::Rotation2Dd(there.angle_deg * kDegree) * origin;
+    position.x = there.x + at.x();
+    position.y = there.y + at.y();
     return position;
 }
 

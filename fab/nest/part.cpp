@@ -14,8 +14,6 @@ namespace leafcutter::fab {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 constexpr std::size_t kMostCircles = 32;
 constexpr std::size_t kMostBandCircles = 48;
 constexpr double kBandSlenderness = 6.0;
@@ -207,7 +205,7 @@ void fill_circles(const NestPart& part, double c, double s, TurnedPart& out) {
         out.group_y1[group] = std::max(out.group_y1[group], y + r);
         if (out.band) {
             const BandPoint& point = part.middle[i];
-            const double whole = part.middle.back().from_start + part.middle.front().from_start;
+            const double whole = part.middle_length();
             out.along_x[i] = static_cast<float>(c * point.along.x() - s * point.along.y());
             out.along_y[i] = static_cast<float>(s * point.along.x() + c * point.along.y());
             out.to_end[i] =

@@ -45,6 +45,8 @@ struct NestPart {
     // Turned as it moves: any rotation, or within intervals. Else the rotations are a list.
     bool turns_freely() const { return !allowed_deg.is_list(); }
     bool is_band() const { return !middle.empty(); }
+    // Of a band; its points lie half a step from the ends.
+    double middle_length() const { return middle.back().from_start + middle.front().from_start; }
 };
 
 // `outline` is simple, with at least three vertices, in either orientation. `grow` is what is added

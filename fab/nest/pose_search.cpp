@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "fab/nest/mate.h"
 
@@ -13,8 +12,6 @@ namespace leafcutter::fab {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // `position` turned by `by_deg` about a point of the part.
 void turn_about(const Eigen::Vector2d& pivot, double by_deg, Position& position) {
@@ -246,18 +243,20 @@ std::vector<Candidate> PoseSearch::beside_others(std::size_t item,
     const NestPart& part = board_.plan().part(item);
     const double unit = step_unit(part, board_.shape(item));
     forget_kept(unit);
-    Position position;
+    const auto consider_elsewhere = [&](const Position& position) {
+        if (!is_same_place(part, position, from)) {
+            consider(item, position);
+        }
+    };
     for (int i = 0; i < tries; ++i) {
         if (const auto mate = best_mate(board_.plan(), item, kMatched, random_)) {
-            position = mated(board_, *mate);
-            if (!is_same_place(part, position, from)) {
-                consider(item, position);
-            }
+            consider_elsewhere(mated(board_, *mate));
         }
     }
+    Position position;
     for (int i = 0; i < kAnywhere; ++i) {
-        if (sample(item, position) && !is_same_place(part, position, from)) {
-            consider(item, position);
+        if (sample(item, position)) {
+            consider_elsewhere(position);
         }
     }
     descend_kept(item, unit);

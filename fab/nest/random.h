@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -29,6 +30,11 @@ public:
     // In [0, count).
     std::size_t below(std::size_t count) {
         return static_cast<std::size_t>(unit() * static_cast<double>(count));
+    }
+    // In [0, count), early ones more likely: few behind a share of `spread`.
+    std::size_t early(std::size_t count, double spread) {
+        const double pick = std::min(spread * std::abs(normal()), 0.999);
+        return static_cast<std::size_t>(pick * static_cast<double>(count));
     }
     // About normal, by a sum of twelve: no library function whose last bits may differ.
     double normal() {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "fab/nest/least_move.h"
 #include "fab/nest/random.h"
@@ -14,8 +13,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 double deepest_of(const std::vector<Contact>& contacts) {
     double most = 0.0;

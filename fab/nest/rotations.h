@@ -4,10 +4,13 @@
 
 #include <cstddef>
 #include <initializer_list>
+#include <numbers>
 #include <span>
 #include <vector>
 
 namespace leafcutter::fab {
+
+inline constexpr double kDegree = std::numbers::pi / 180.0;  // In radians.
 
 // Degrees, counter-clockwise; from <= to. A single angle where both are the same.
 struct AngleInterval {

@@ -7,13 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace leafcutter::fab {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 double angle_of_deg(const Eigen::Vector2d& direction) {
     return std::atan2(direction.y(), direction.x()) / kDegree;
