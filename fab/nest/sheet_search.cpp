@@ -1,9 +1,10 @@
-// First fit on the cheapest sheets, then mixes that cost less (sheets whose items must find room on
-// the others), then compaction of the dearest sheet.
+// First fit on the cheapest sheets, room for what found none, then mixes that cost less (sheets
+// whose items must find room on the others), then compaction of the dearest sheet.
 
 #include "fab/nest/sheet_search.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -19,10 +20,12 @@ namespace leafcutter::fab {
 namespace {
 
 constexpr double kStartShare = 0.15;  // Of all work: the first layouts,
+constexpr double kLeftShare = 0.2;    // room for what chance found none, where there is some,
 constexpr double kMixesShare = 0.4;   // cheaper mixes, where there may be some
 constexpr double kHidesShare = 0.9;   // (if all are irregular),
 constexpr double kLikeliest = 0.8;
 constexpr double kBriefShare = 0.125;  // and a short look at each of several sizes.
+constexpr int kEndless = std::numeric_limits<int>::max();
 constexpr std::size_t kMostTries = 4;  // Of mixes that came to nothing.
 
 // How densely sheets may come to be filled: hides, and rectangles by what they are filled so far.
@@ -58,14 +61,23 @@ public:
         }
         done_ = hides_ ? 0.0 : kStartShare;
         choose_start(trials);
-        if ((problem_.kinds.size() > 1 || hides_) && !best_.kinds.empty()) {
-            find_cheaper(hides_ ? kHidesShare : kMixesShare);
+        try {
+            improve();
+        } catch (const geometry::Cancelled&) {
+            // The best so far is a whole layout.
         }
-        compact_best(1.0 - done_);
         return packing_of(best_);
     }
 
 private:
+    void improve() {
+        find_room(kLeftShare);
+        if ((problem_.kinds.size() > 1 || hides_) && !best_.kinds.empty()) {
+            find_cheaper(std::min(hides_ ? kHidesShare : kMixesShare, 0.9 * (1.0 - done_)));
+        }
+        compact_best(1.0 - done_);
+    }
+
     CompactionOptions share_of(double share) const {
         CompactionOptions out = options_;
         out.max_evaluations = std::max<std::int64_t>(
@@ -184,6 +196,58 @@ private:
         return best;
     }
 
+    // What random places did not suit, among holes and zones, may have room all the same.
+    void find_room(double share) {
+        const std::vector<std::size_t> left_over = left_over_parts();
+        const double each = share / static_cast<double>(std::max<std::size_t>(left_over.size(), 1));
+        for (const std::size_t part : left_over) {
+            for (std::size_t item = 0; item < problem_.part_of.size(); ++item) {
+                const bool waits = problem_.part_of[item] == part && best_.positions[item].bin < 0;
+                if (waits && !try_room(item, each)) {
+                    break;
+                }
+            }
+            done_ += each;
+        }
+    }
+
+    // Each part once, if it is not larger than any sheet.
+    std::vector<std::size_t> left_over_parts() const {
+        std::vector<std::size_t> parts;
+        for (std::size_t item = 0; item < problem_.part_of.size(); ++item) {
+            const std::size_t part = problem_.part_of[item];
+            if (best_.positions[item].bin < 0 && may_fit_some_sheet(item) &&
+                std::find(parts.begin(), parts.end(), part) == parts.end()) {
+                parts.push_back(part);
+            }
+        }
+        return parts;
+    }
+
+    bool may_fit_some_sheet(std::size_t item) const {
+        for (std::size_t kind = 0; kind < problem_.kinds.size(); ++kind) {
+            if (start_.may_fit(item, kind)) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    // On the sheets of the best layout, and an empty one of each kind that there is one more of.
+    bool try_room(std::size_t item, double share) {
+        SheetTrial wider = best_;
+        for (std::size_t kind = 0; kind < problem_.kinds.size(); ++kind) {
+            const auto used = std::count(best_.kinds.begin(), best_.kinds.end(), kind);
+            const bool more = used < problem_.kinds[kind].quantity.value_or(kEndless);
+            if (more && start_.may_fit(item, kind)) {
+                wider.kinds.push_back(kind);
+            }
+        }
+        std::vector<std::size_t> items = laid_items(best_);
+        items.push_back(item);
+        return try_settling(wider, items, share);
+    }
+
     void compact_best(double share) {
         const SheetTrial from = best_;
         compacted(from, share, [this](const SheetTrial& next) {
@@ -230,15 +294,20 @@ private:
         if (is_better(fresh, best_) && publish(fresh)) {
             return true;
         }
-        const SheetTrial moved = moved_to(mix);
-        const std::vector<std::size_t> items = laid_items(best_);
-        const BoardPlan plan = start_.frame(moved.quarters).plan(items, moved.kinds);
+        return try_settling(moved_to(mix), laid_items(best_), share);
+    }
+
+    // These items, freed of overlaps on the sheets of `trial`.
+    bool try_settling(const SheetTrial& trial,
+                      const std::vector<std::size_t>& items,
+                      double share) {
+        const BoardPlan plan = start_.frame(trial.quarters).plan(items, trial.kinds);
         const Settled settled =
-            settle(plan, positions_of(moved, items), share_of(share), context_of(share));
+            settle(plan, positions_of(trial, items), share_of(share), context_of(share));
         if (!settled.found) {
             return false;
         }
-        const SheetTrial next = with(moved, items, settled.positions);
+        const SheetTrial next = with(trial, items, settled.positions);
         return is_better(next, best_) && publish(next);
     }
 

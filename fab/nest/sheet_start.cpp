@@ -54,7 +54,6 @@ SheetStart::SheetStart(const SheetProblem& problem, const CompactionOptions& opt
         std::vector<char> fits;
         for (const NestPart& part : problem.parts) {
             const bool fine =
-                !kind.is_plain() ||
                 fitting_angle(make_shape(part.outline), {kind.width - slack, kind.height - slack},
                               part.allowed_deg)
                     .has_value();

@@ -50,7 +50,7 @@ public:
                    std::int64_t rows,
                    const geometry::Context& context) const;
 
-    // Whether the item fits an empty plain sheet of that kind; of others nobody knows.
+    // Whether the item fits an empty sheet of that kind if nothing of it is taken.
     bool may_fit(std::size_t item, std::size_t kind) const {
         return fits_[kind][problem_.part_of[item]] != 0;
     }

@@ -227,6 +227,27 @@ TEST(NestInstance, KeepsToIrregularBinsHolesAndQualities) {
     EXPECT_EQ(placed, 9U);
 }
 
+// A square with two long thin arms: of a thousand random places in its bounds hardly one suits a
+// square that is but little smaller.
+TEST(NestInstance, FindsRoomThatRandomPlacesHardlyHit) {
+    NestInstance instance;
+    InstanceItem square;
+    square.demand = 2;
+    square.outline = {{0.0, 0.0}, {60.0, 0.0}, {60.0, 60.0}, {0.0, 60.0}};
+    square.allowed_deg = {0.0};
+    instance.items = {square};
+    InstanceBin bin;
+    bin.outline = {{0.0, 0.0},   {100.0, 0.0}, {100.0, 5.0}, {60.2, 5.0},
+                   {60.2, 60.2}, {5.0, 60.2},  {5.0, 100.0}, {0.0, 100.0}};
+    instance.bins = {bin, bin, bin};
+    for (std::size_t i = 0; i < instance.bins.size(); ++i) {
+        instance.bins[i].id = static_cast<int>(i);
+    }
+    const InstanceSolution solution = solve(instance, short_search(1), {});
+    EXPECT_TRUE(solution.unplaced.empty());
+    EXPECT_EQ(solution.layouts.size(), 2U);
+}
+
 TEST(NestInstance, ReportsWhatFitsNowhere) {
     NestInstance instance = hide_with_hole_and_zone();
     instance.items[1].outline = {{0.0, 0.0}, {200.0, 0.0}, {200.0, 1.0}};
