@@ -9,8 +9,10 @@ namespace {
 
 constexpr double kFirstShrink = 0.01;
 constexpr double kFinestShrink = 0.001;
-constexpr double kRestartsUntil = 0.5;  // Of the whole search.
-constexpr std::size_t kStalled = 3;     // Attempts in vain at one target.
+constexpr double kRestartsUntil = 0.5;  // Of the whole search; what stalls later is squeezed,
+constexpr double kSqueeze = 0.02;       // at first by so much.
+constexpr std::size_t kManyParts = 20;
+constexpr std::size_t kStalled = 3;  // Attempts in vain at one target.
 // An attempt is given up after a while, counted in the whole search, and after more for large jobs.
 constexpr double kLongAttempt = 0.015;
 constexpr double kLongestAttempt = 0.1;
@@ -84,17 +86,16 @@ void Explorer::begin_attempt() {
 }
 
 void Explorer::begin_exploring() {
-    const Extent next = extent_of_area(plan_, best_area_ * (1.0 - shrink_));
-    const double middle = board_.width_of(board_.extent().bins - 1) / 2.0;
+    constexpr double kMiddle = 0.5;
     if (failed_.empty()) {
-        target_ = next;
-        attempt(best_.positions, best_.extent, target_, middle);
+        target_ = extent_of_area(plan_, best_area_ * (1.0 - shrink_));
+        attempt(best_.positions, best_.extent, target_, squeezed_ ? random_.unit() : kMiddle);
         return;
     }
     // One of those that came near, a good one more likely, with two large parts swapped.
     std::vector<Position> positions = failed_[random_.early(failed_.size(), 0.25)].positions;
     swap_.apply(positions, random_);
-    attempt(std::move(positions), target_, target_, middle);
+    attempt(std::move(positions), target_, target_, kMiddle);
 }
 
 void Explorer::begin_compressing() {
@@ -102,22 +103,22 @@ void Explorer::begin_compressing() {
     constexpr double kFine = 1e-5;
     const double left = std::clamp((1.0 - progress_) / 0.2, 0.0, 1.0);
     target_ = extent_of_area(plan_, best_area_ * (1.0 - (kFine + (kCoarse - kFine) * left)));
-    const double split = random_.unit() * board_.width_of(board_.extent().bins - 1);
-    attempt(best_.positions, best_.extent, target_, split);
+    attempt(best_.positions, best_.extent, target_, random_.unit());
 }
 
-// What lies right of `split` on the last sheet moves along with its edge.
+// What lies right of `split`, a share of the last sheet's width, moves along with its edge.
 void Explorer::attempt(std::vector<Position> positions,
                        const Extent& from,
                        const Extent& to,
                        double split) {
+    const double border = split * from.last_width;
     std::vector<std::size_t> homeless;
     for (std::size_t item = 0; item < positions.size(); ++item) {
         Position& at = positions[item];
         if (at.bin >= to.bins) {
             homeless.push_back(item);
             at.bin = static_cast<int>(random_.below(static_cast<std::size_t>(to.bins)));
-        } else if (from.bins == to.bins && at.bin + 1 == to.bins && at.x > split) {
+        } else if (from.bins == to.bins && at.bin + 1 == to.bins && at.x > border) {
             at.x += to.last_width - from.last_width;
         }
     }
@@ -134,6 +135,7 @@ void Explorer::rehome(const std::vector<std::size_t>& homeless) {
 
 void Explorer::succeed() {
     working_ = false;
+    squeezed_ = false;
     best_ = {board_.positions(), board_.extent()};
     best_area_ = area_taken(plan_, best_.extent);
     failed_.clear();
@@ -157,8 +159,13 @@ void Explorer::fail() {
     failed_.insert(at, std::move(failed));
     constexpr std::size_t kMostKept = 40;
     failed_.resize(std::min(failed_.size(), kMostKept));
-    if (progress_ < kRestartsUntil && failed_.size() >= kStalled) {
+    if (failed_.size() < kStalled) {
+        return;
+    }
+    if (progress_ < kRestartsUntil) {
         restart();
+    } else if (board_.items() >= kManyParts) {
+        squeeze();
     }
 }
 
@@ -168,6 +175,15 @@ void Explorer::restart() {
     best_ = start_;
     best_area_ = area_taken(plan_, start_.extent);
     shrink_ = kFirstShrink;
+    failed_.clear();
+}
+
+// Parts wedged between the edges in rows as long as the sheet overlap by so little when it shrinks
+// a little that nothing moves them apart: by more, they must find other places. Of few parts, two
+// swapped are change enough.
+void Explorer::squeeze() {
+    squeezed_ = true;
+    shrink_ = kSqueeze;
     failed_.clear();
 }
 

@@ -46,6 +46,7 @@ private:
     void succeed();
     void fail();
     void restart();
+    void squeeze();
     void rehome(const std::vector<std::size_t>& homeless);
 
     const BoardPlan& plan_;
@@ -62,6 +63,7 @@ private:
     double progress_ = 0.0;
     double begun_ = 0.0;  // Progress when the attempt began.
     std::int64_t begun_evaluations_ = 0;
+    bool squeezed_ = false;  // Without success since.
     bool working_ = false;
     bool compressed_ = false;     // The attempt is one of the compressing phase.
     std::vector<Failed> failed_;  // At the present target, least overlap first.
