@@ -10,9 +10,9 @@ namespace {
 constexpr double kFirstShrink = 0.01;
 constexpr double kFinestShrink = 0.001;
 constexpr double kRestartsUntil = 0.5;  // Of the whole search; what stalls later is squeezed,
-constexpr double kSqueeze = 0.02;       // at first by so much.
-constexpr std::size_t kManyParts = 20;
-constexpr std::size_t kStalled = 3;  // Attempts in vain at one target.
+constexpr double kSqueeze = 0.02;       // at first by so much, where there are many copies
+constexpr std::size_t kManyCopies = 8;  // of each part: swaps of two change little.
+constexpr std::size_t kStalled = 3;     // Attempts in vain at one target.
 // An attempt is given up after a while, counted in the whole search, and after more for large jobs.
 constexpr double kLongAttempt = 0.015;
 constexpr double kLongestAttempt = 0.1;
@@ -164,7 +164,7 @@ void Explorer::fail() {
     }
     if (progress_ < kRestartsUntil) {
         restart();
-    } else if (board_.items() >= kManyParts) {
+    } else if (board_.items() >= kManyCopies * plan_.parts.size()) {
         squeeze();
     }
 }
@@ -179,8 +179,8 @@ void Explorer::restart() {
 }
 
 // Parts wedged between the edges in rows as long as the sheet overlap by so little when it shrinks
-// a little that nothing moves them apart: by more, they must find other places. Of few parts, two
-// swapped are change enough.
+// a little that nothing moves them apart: by more, they must find other places. Where parts differ
+// swaps gain more (dagli, fu).
 void Explorer::squeeze() {
     squeezed_ = true;
     shrink_ = kSqueeze;
