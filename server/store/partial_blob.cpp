@@ -3,7 +3,6 @@
 #include <array>
 #include <cerrno>
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -22,25 +21,51 @@ int opened(const fs::path& path) {
     return ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
 }
 
+fs::path path_of(const Blobs& blobs, const std::string& sha256) {
+    return blobs.folder() / Blobs::kPartial / sha256;
+}
+
+// Of the open file, not of the process: two connections of one daemon exclude each other. And
+// whether it is held can be asked without holding it, which flock() cannot.
+struct flock whole_file(short type) {
+    struct flock lock {};
+    lock.l_type = type;
+    lock.l_whence = SEEK_SET;
+    return lock;
+}
+
 [[noreturn]] void fail(const fs::path& path) {
     throw BlobWriteFailed(
-        fmt::format("cannot write {}: {}", path.string(), std::generic_category().message(errno)));
+        fmt::format("cannot use {}: {}", path.string(), std::generic_category().message(errno)));
 }
 
 }  // namespace
 
+std::optional<std::int64_t> PartialBlob::bytes_here(const Blobs& blobs, const std::string& sha256) {
+    const fs::path path = path_of(blobs, sha256);
+    const FileHandle file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.fd() < 0 && errno == ENOENT) {
+        return 0;
+    }
+    struct flock lock = whole_file(F_RDLCK);
+    struct stat found {};
+    if (file.fd() < 0 || ::fcntl(file.fd(), F_OFD_GETLK, &lock) != 0 ||
+        ::fstat(file.fd(), &found) != 0) {
+        fail(path);
+    }
+    return lock.l_type == F_UNLCK ? std::optional<std::int64_t>(found.st_size) : std::nullopt;
+}
+
 PartialBlob::PartialBlob(const Blobs& blobs, const std::string& sha256)
-    : blobs_(blobs),
-      sha256_(sha256),
-      path_(blobs.folder() / Blobs::kPartial / sha256),
-      file_(opened(path_)) {
+    : blobs_(blobs), sha256_(sha256), path_(path_of(blobs, sha256)), file_(opened(path_)) {
     if (file_.fd() < 0) {
         fail(path_);
     }
     // Somebody may have made it whole between the two calls: then the name leads elsewhere.
     struct stat mine {};
     struct stat named {};
-    ours_ = ::flock(file_.fd(), LOCK_EX | LOCK_NB) == 0 && ::fstat(file_.fd(), &mine) == 0 &&
+    struct flock lock = whole_file(F_WRLCK);
+    ours_ = ::fcntl(file_.fd(), F_OFD_SETLK, &lock) == 0 && ::fstat(file_.fd(), &mine) == 0 &&
             ::stat(path_.c_str(), &named) == 0 && mine.st_ino == named.st_ino;
     bytes_ = mine.st_size;
 }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -15,6 +16,9 @@ namespace leafcutter::server {
 
 class PartialBlob {
 public:
+    // How much of it is here, without taking it up; nullopt while a connection sends it.
+    static std::optional<std::int64_t> bytes_here(const Blobs& blobs, const std::string& sha256);
+
     // Begins it, or takes it up. Throws BlobWriteFailed.
     PartialBlob(const Blobs& blobs, const std::string& sha256);
 

@@ -2,11 +2,13 @@
 
 #include <fstream>
 #include <stdexcept>
+#include <thread>
 
 #include <gtest/gtest.h>
 
-#include "server/store/sqlite/database.h"
+#include "server/store/partial_blob.h"
 #include "server/store/sql/events.h"
+#include "server/store/sqlite/database.h"
 #include "server/store/store.h"
 #include "server/store/store_error.h"
 #include "tests/support/temp_dir.h"
@@ -151,6 +153,41 @@ TEST(Blobs, SweepTakesOnlyOldOnesThatNobodyNames) {
     EXPECT_TRUE(blobs.size(named));
     EXPECT_FALSE(blobs.size(old));
     EXPECT_TRUE(blobs.size(young));
+}
+
+TEST(PartialBlob, HasOneWriterAndTellsOthersSo) {
+    const test::TempDir folder;
+    const Blobs blobs(folder.path());
+    const std::string name = sha256_of("abc");
+    EXPECT_EQ(PartialBlob::bytes_here(blobs, name), 0);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / Blobs::kPartial));
+    {
+        PartialBlob part(blobs, name);
+        part.write(std::string("ab"));
+        EXPECT_TRUE(part.is_ours());
+        EXPECT_FALSE(PartialBlob(blobs, name).is_ours());
+        EXPECT_EQ(PartialBlob::bytes_here(blobs, name), std::nullopt);
+    }
+    EXPECT_EQ(PartialBlob::bytes_here(blobs, name), 2);
+    PartialBlob part(blobs, name);
+    part.write(std::string("c"));
+    EXPECT_TRUE(part.finish());
+    EXPECT_EQ(blobs.read(name), "abc");
+}
+
+// Whoever asks after a broken connection asks while its last bytes are still on their way.
+TEST(PartialBlob, IsNotKeptFromItsWriterByWhoeverAsks) {
+    const test::TempDir folder;
+    const Blobs blobs(folder.path());
+    const std::string name = sha256_of("abc");
+    const std::jthread asker([&](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            PartialBlob::bytes_here(blobs, name);
+        }
+    });
+    for (int i = 0; i < 2000; ++i) {
+        ASSERT_TRUE(PartialBlob(blobs, name).is_ours());
+    }
 }
 
 }  // namespace

@@ -87,11 +87,24 @@ void skip_body(Request& request) {
 }
 
 // How much is here, so that the next piece begins there.
-Response part_taken(const PartialBlob& part) {
+Response part_taken(std::int64_t here) {
     Response response;
     response.status = 202;
-    response.headers["Upload-Offset"] = std::to_string(part.bytes());
+    response.headers["Upload-Offset"] = std::to_string(here);
     return response;
+}
+
+HttpProblem sent_by_another() {
+    return HttpProblem(409, "busy", "another connection sends this blob just now");
+}
+
+// Asking must not keep a piece that comes at the same moment from being taken.
+Response tell_offset(App& app, const std::string& sha256) {
+    const auto here = PartialBlob::bytes_here(app.store().blobs, sha256);
+    if (!here) {
+        throw sent_by_another();
+    }
+    return part_taken(*here);
 }
 
 HttpProblem upload_gap(std::int64_t here) {
@@ -103,10 +116,7 @@ HttpProblem upload_gap(std::int64_t here) {
 Response take_piece(App& app, Request& request, const std::string& sha256, const Piece& piece) {
     PartialBlob part(app.store().blobs, sha256);
     if (!part.is_ours()) {
-        throw HttpProblem(409, "busy", "another connection sends this blob just now");
-    }
-    if (piece.bytes == 0) {
-        return part_taken(part);
+        throw sent_by_another();
     }
     if (piece.first > part.bytes()) {
         throw upload_gap(part.bytes());
@@ -118,7 +128,7 @@ Response take_piece(App& app, Request& request, const std::string& sha256, const
         part.write({room.data(), size});
     }
     if (part.bytes() < piece.whole) {
-        return part_taken(part);
+        return part_taken(part.bytes());
     }
     if (!part.finish()) {
         throw HttpProblem(422, "bad-digest", "the bytes have another SHA-256 than the name says");
@@ -173,7 +183,11 @@ Response put_blob(App& app, Request& request) {
         response.status = 204;
         return response;
     }
-    return piece ? take_piece(app, request, wanted, *piece) : take_whole(app, request, wanted);
+    if (!piece) {
+        return take_whole(app, request, wanted);
+    }
+    const bool asks = piece->bytes == 0;
+    return asks ? tell_offset(app, wanted) : take_piece(app, request, wanted, *piece);
 }
 
 }  // namespace leafcutter::server
