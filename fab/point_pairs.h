@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::fab {
 
 class PointPairs {
@@ -17,7 +19,7 @@ public:
         from_squares_ += from.squaredNorm();
         to_squares_ += to.squaredNorm();
         dots_ += from.dot(to);
-        crosses_ += from.x() * to.y() - from.y() * to.x();
+        crosses_ += geometry::turn_of(from, to);
     }
 
     // Not before the first pair.
@@ -32,7 +34,7 @@ public:
     Eigen::Vector2d products() const {
         const Eigen::Vector2d p = from();
         const Eigen::Vector2d q = to();
-        return {dots_ - count_ * p.dot(q), crosses_ - count_ * (p.x() * q.y() - p.y() * q.x())};
+        return {dots_ - count_ * p.dot(q), crosses_ - count_ * geometry::turn_of(p, q)};
     }
 
 private:

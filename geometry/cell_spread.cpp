@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::geometry {
 namespace {
 
@@ -66,8 +68,7 @@ CellSpread cell_spread(std::span<const Cylinder> cylinders) {
             const auto& gf = cylinder.corner_gf[t];
             const Eigen::Vector2d p = gf[1] - gf[0];
             const Eigen::Vector2d q = gf[2] - gf[0];
-            parts.push_back(
-                {0.5 * ab.cross(ac).norm(), 0.5 * std::abs(p.x() * q.y() - p.y() * q.x())});
+            parts.push_back({0.5 * ab.cross(ac).norm(), 0.5 * std::abs(turn_of(p, q))});
         }
     }
     return cell_spread(parts);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/plane.h"
 #include "geometry/surface_measures.h"
 
 namespace leafcutter::geometry {
@@ -38,7 +39,7 @@ double flat_area(const Foliation& foliation, const Cylinder& cylinder) {
     for (const auto& corners : cylinder.corner_gf) {
         const Eigen::Vector2d p = corners[1] - corners[0];
         const Eigen::Vector2d q = corners[2] - corners[0];
-        const double twice = p.x() * q.y() - p.y() * q.x();
+        const double twice = turn_of(p, q);
         if (!(twice > 0.0) || !std::isfinite(twice)) {
             fail(foliation,
                  fmt::format("a triangle of cylinder {} is flipped or flat", cylinder.graph_edge));

@@ -7,13 +7,11 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::geometry {
 
 namespace {
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 // The polygon seen along its normal, counter-clockwise: the normal is Newell's, twice the vector
 // area.
@@ -101,7 +99,7 @@ EarClipper::EarClipper(std::vector<Eigen::Vector2d> points) : points_(std::move(
 }
 
 double EarClipper::turn(std::size_t tip) const {
-    return cross(points_[tip] - points_[before_[tip]], points_[after_[tip]] - points_[tip]);
+    return turn_of(points_[tip] - points_[before_[tip]], points_[after_[tip]] - points_[tip]);
 }
 
 bool EarClipper::is_ear(std::size_t tip) const {
@@ -116,8 +114,8 @@ bool EarClipper::is_ear(std::size_t tip) const {
         if (p == a || p == b || p == c) {
             continue;  // The same corner, or its twin at the far side of a keyhole cut.
         }
-        if (cross(b - a, p - a) >= 0.0 && cross(c - b, p - b) >= 0.0 &&
-            cross(a - c, p - c) >= 0.0) {
+        if (turn_of(b - a, p - a) >= 0.0 && turn_of(c - b, p - b) >= 0.0 &&
+            turn_of(a - c, p - c) >= 0.0) {
             return false;
         }
     }
@@ -178,7 +176,7 @@ void triangulate_quad(std::span<const std::uint32_t> corners,
                       std::vector<Triangle>& triangles) {
     const std::vector<Eigen::Vector2d> flat = flatten(corners, positions);
     const auto turn = [&](std::size_t tip) {
-        return cross(flat[tip] - flat[(tip + 3) % 4], flat[(tip + 1) % 4] - flat[tip]);
+        return turn_of(flat[tip] - flat[(tip + 3) % 4], flat[(tip + 1) % 4] - flat[tip]);
     };
     const double across_02 = std::min(turn(1), turn(3));
     const double across_13 = std::min(turn(0), turn(2));

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "fab/nest/shape.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::turn_of;
 
 namespace {
 

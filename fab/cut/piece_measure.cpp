@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "fab/cut/registration.h"
-#include "fab/nest/shape.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::turn_of;
 
 namespace {
 

@@ -9,9 +9,12 @@
 #include <set>
 #include <utility>
 
-#include "fab/nest/shape.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
+using geometry::turn_of;
 
 namespace {
 

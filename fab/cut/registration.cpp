@@ -9,9 +9,12 @@
 #include <Eigen/Geometry>
 
 #include "fab/clipper_paths.h"
-#include "fab/nest/shape.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
+using geometry::turn_of;
 
 namespace {
 

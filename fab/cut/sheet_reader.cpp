@@ -14,8 +14,11 @@
 #include "fab/cut/planar_faces.h"
 #include "fab/nest/collision.h"
 #include "fab/nest/shape.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 

@@ -4,7 +4,11 @@
 #include <map>
 #include <numeric>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::fab {
+
+using geometry::turn_of;
 
 namespace {
 
@@ -20,9 +24,7 @@ double distance(const Vector2d& point, const StrokeLine& line) {
 
 bool cross(const StrokeLine& a, const StrokeLine& b) {
     const auto side = [](const StrokeLine& line, const Vector2d& point) {
-        const Vector2d d = line.to - line.from;
-        const Vector2d e = point - line.from;
-        return d.x() * e.y() - d.y() * e.x() > 0.0;
+        return turn_of(line.to - line.from, point - line.from) > 0.0;
     };
     return side(a, b.from) != side(a, b.to) && side(b, a.from) != side(b, a.to);
 }

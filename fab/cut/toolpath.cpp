@@ -15,11 +15,13 @@
 #include "fab/cut/cut_contours.h"
 #include "fab/cut/cut_order.h"
 #include "fab/cut/estimate.h"
-#include "fab/nest/shape.h"
 #include "fab/strips/labels.h"
 #include "geometry/error.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 

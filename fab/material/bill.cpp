@@ -9,8 +9,11 @@
 #include "fab/cut/motion.h"
 #include "fab/job_result.h"
 #include "fab/material/totals.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 
@@ -40,7 +43,7 @@ void add_sheet(const Sheet& sheet,
                BillLine& line) {
     ++line.sheets;
     line.sheets_area_mm2 += sheet.outline.empty() ? sheet.size.width_mm * sheet.size.height_mm
-                                                  : std::abs(ring_area(sheet.outline));
+                                                  : std::abs(signed_area(sheet.outline));
     for (const Placement& placement : sheet.placements) {
         if (const auto area = areas.find(placement.piece); area != areas.end()) {
             ++line.pieces;
@@ -102,7 +105,7 @@ BillLine line_of(const JobResult& job, const Material& material, const PieceArea
 Bill make_bill(const JobResult& job) {
     PieceAreas areas;
     for (const Piece& piece : job.pieces) {
-        areas.emplace(piece.id, ring_area(piece.outline));
+        areas.emplace(piece.id, signed_area(piece.outline));
     }
     Bill bill;
     bill.lines.push_back(line_of(job, job.weft, areas));

@@ -4,14 +4,17 @@
 #include <cmath>
 
 #include "fab/material/totals.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
 
+using geometry::signed_area;
+
 double usable_area(const StockItem& sheet) {
     double area = sheet.outline.empty() ? sheet.size.width_mm * sheet.size.height_mm
-                                        : std::abs(ring_area(sheet.outline));
+                                        : std::abs(signed_area(sheet.outline));
     for (const SheetZone& zone : sheet.zones) {
-        area -= std::abs(ring_area(zone.outline));
+        area -= std::abs(signed_area(zone.outline));
     }
     return area;
 }

@@ -1,16 +1,10 @@
 #include "fab/material/totals.h"
 
+#include "geometry/plane.h"
+
 namespace leafcutter::fab {
 
-double ring_area(const Ring& ring) {
-    double doubled = 0.0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const Eigen::Vector2d& p = ring[i];
-        const Eigen::Vector2d& q = ring[(i + 1) % ring.size()];
-        doubled += p.x() * q.y() - p.y() * q.x();
-    }
-    return doubled / 2.0;
-}
+using geometry::signed_area;
 
 double piece_length_mm(const Piece& piece) {
     double length = 0.0;
@@ -34,7 +28,7 @@ FamilyTotals total_of(const JobResult& job, Family family) {
         if (piece.family == family) {
             ++totals.pieces;
             totals.length_mm += piece_length_mm(piece);
-            totals.area_mm2 += ring_area(piece.outline);
+            totals.area_mm2 += signed_area(piece.outline);
         }
     }
     totals.weight_g = totals.area_mm2 * 1e-6 * job.material_of(family).weight_g_per_m2;

@@ -6,9 +6,6 @@
 
 namespace leafcutter::fab {
 
-// Area inside a ring, mm²; negative if it runs clockwise.
-double ring_area(const Ring& ring);
-
 // Length of a piece's middle line, without tab.
 double piece_length_mm(const Piece& piece);
 

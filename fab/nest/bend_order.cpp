@@ -4,9 +4,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "fab/nest/shape.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::angle_between;
 
 BandBend bend_of(const NestPart& part) {
     if (part.middle.size() < 3) {
@@ -15,7 +17,7 @@ BandBend bend_of(const NestPart& part) {
     const auto turn = [&](std::size_t from, std::size_t to) {
         const Eigen::Vector2d& a = part.middle[from].along;
         const Eigen::Vector2d& b = part.middle[to].along;
-        return std::atan2(turn_of(a, b), a.dot(b));
+        return angle_between(a, b);
     };
     const std::size_t last = part.middle.size() - 1;
     const double first_half = turn(0, last / 2);

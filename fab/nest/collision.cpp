@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::fab {
+
+using geometry::turn_of;
 
 namespace {
 

@@ -7,8 +7,11 @@
 #include <Eigen/Geometry>
 
 #include "fab/nest/shape.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::turn_of;
 
 namespace {
 

@@ -9,10 +9,11 @@ namespace {
 
 constexpr double kFirstShrink = 0.01;
 constexpr double kFinestShrink = 0.001;
-constexpr double kRestartsUntil = 0.5;  // Of the whole search; what stalls later is squeezed,
-constexpr double kSqueeze = 0.02;       // at first by so much, where there are many copies
-constexpr std::size_t kManyCopies = 8;  // of each part: swaps of two change little.
-constexpr std::size_t kStalled = 3;     // Attempts in vain at one target.
+constexpr double kRestartsUntil = 0.5;  // Of the whole search.
+// Later, with many copies of each part (swaps of two change little), what stalls is squeezed.
+constexpr double kSqueeze = 0.02;
+constexpr std::size_t kManyCopies = 8;
+constexpr std::size_t kStalled = 3;  // Attempts in vain at one target.
 // An attempt is given up after a while, counted in the whole search, and after more for large jobs.
 constexpr double kLongAttempt = 0.015;
 constexpr double kLongestAttempt = 0.1;

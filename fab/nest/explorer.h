@@ -63,8 +63,8 @@ private:
     double progress_ = 0.0;
     double begun_ = 0.0;  // Progress when the attempt began.
     std::int64_t begun_evaluations_ = 0;
-    bool squeezed_ = false;  // Without success since.
     bool working_ = false;
+    bool squeezed_ = false;       // Without success since.
     bool compressed_ = false;     // The attempt is one of the compressing phase.
     std::vector<Failed> failed_;  // At the present target, least overlap first.
 };

@@ -17,8 +17,11 @@
 #include "fab/nest/nest.h"
 #include "fab/nest/offcut.h"
 #include "geometry/error.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 
@@ -164,7 +167,7 @@ void check_stock(const std::vector<StockItem>& stock) {
 double density_percent(const Layout& layout, std::span<const Piece> pieces) {
     std::map<std::string_view, double> areas;
     for (const Piece& piece : pieces) {
-        areas[piece.id] = ring_area(piece.outline);
+        areas[piece.id] = signed_area(piece.outline);
     }
     double used = 0.0;
     double whole = 0.0;

@@ -11,8 +11,11 @@
 #include "fab/nest/instance_check.h"
 #include "fab/nest/shape.h"
 #include "geometry/error.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 

@@ -16,8 +16,11 @@
 #include "fab/nest/sheet_search.h"
 #include "fab/nest/simple_ring.h"
 #include "geometry/error.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 
@@ -134,7 +137,7 @@ private:
             }
             layout.sheets[static_cast<std::size_t>(at.bin)].placements.push_back(
                 placement_of(item, at));
-            area_mm2 += std::abs(ring_area(pieces_[item]->outline));
+            area_mm2 += std::abs(signed_area(pieces_[item]->outline));
         }
         layout.density_percent = whole_mm2 > 0.0 ? 100.0 * area_mm2 / whole_mm2 : 0.0;
         return layout;
@@ -151,7 +154,7 @@ private:
 
 double sheet_area_mm2(const Sheet& sheet) {
     return sheet.outline.empty() ? sheet.size.width_mm * sheet.size.height_mm
-                                 : std::abs(ring_area(sheet.outline));
+                                 : std::abs(signed_area(sheet.outline));
 }
 
 Layout nest(std::span<const Piece* const> pieces,

@@ -14,9 +14,11 @@
 
 #include "fab/clipper_paths.h"
 #include "fab/nest/free_rectangle.h"
-#include "fab/nest/shape.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 

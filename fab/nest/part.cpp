@@ -9,8 +9,11 @@
 
 #include "fab/nest/collision.h"
 #include "fab/nest/grow.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 

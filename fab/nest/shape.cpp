@@ -8,7 +8,12 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::fab {
+
+using geometry::signed_area;
+using geometry::turn_of;
 
 namespace {
 
@@ -105,14 +110,6 @@ Box bounds(std::span<const Eigen::Vector2d> points) {
         box.high = box.high.cwiseMax(point);
     }
     return box;
-}
-
-double signed_area(std::span<const Eigen::Vector2d> ring) {
-    double twice = 0.0;
-    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-        twice += turn_of(ring[i] - ring[0], ring[i + 1] - ring[0]);
-    }
-    return twice / 2.0;
 }
 
 Ring moved(const Ring& ring, const Pose& pose) {

@@ -43,16 +43,10 @@ struct NestShape {
 // `outline` is simple and has at least three vertices, in either orientation.
 NestShape make_shape(const Ring& outline);
 
-// z of the cross product.
-inline double turn_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
-
 // Counter-clockwise.
 Ring convex_hull(Ring points);
 
 Box bounds(std::span<const Eigen::Vector2d> points);
-double signed_area(std::span<const Eigen::Vector2d> ring);
 Ring moved(const Ring& ring, const Pose& pose);
 
 // The same outline; edges longer than `longest` in equal parts.

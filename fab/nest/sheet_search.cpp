@@ -19,12 +19,14 @@ namespace leafcutter::fab {
 
 namespace {
 
-constexpr double kStartShare = 0.15;  // Of all work: the first layouts,
-constexpr double kLeftShare = 0.2;    // room for what chance found none, where there is some,
-constexpr double kMixesShare = 0.4;   // cheaper mixes, where there may be some
-constexpr double kHidesShare = 0.9;   // (if all are irregular),
-constexpr double kLikeliest = 0.8;
-constexpr double kBriefShare = 0.125;  // and a short look at each of several sizes.
+// Shares of all work:
+constexpr double kStartShare = 0.15;   // the first layouts;
+constexpr double kBriefShare = 0.125;  // a short look at each of several sizes;
+constexpr double kLeftShare = 0.2;     // room for what chance found none;
+constexpr double kMixesShare = 0.4;    // cheaper mixes, where rectangles are among the sheets.
+// Shares of what is left then:
+constexpr double kMostMixes = 0.9;  // most for cheaper mixes,
+constexpr double kLikeliest = 0.8;  // the first of them where all sheets are irregular.
 constexpr int kEndless = std::numeric_limits<int>::max();
 constexpr std::size_t kMostTries = 4;  // Of mixes that came to nothing.
 
@@ -73,7 +75,8 @@ private:
     void improve() {
         find_room(kLeftShare);
         if ((problem_.kinds.size() > 1 || hides_) && !best_.kinds.empty()) {
-            find_cheaper(std::min(hides_ ? kHidesShare : kMixesShare, 0.9 * (1.0 - done_)));
+            const double most = kMostMixes * (1.0 - done_);
+            find_cheaper(hides_ ? most : std::min(kMixesShare, most));
         }
         compact_best(1.0 - done_);
     }
@@ -276,7 +279,7 @@ private:
         while (failed.size() < kMostTries) {
             const std::optional<Mix> mix = roomiest_cheaper_mix(
                 problem_, best_.kinds, best_.unplaced > 0 ? area_ : area_ / densest(), failed);
-            if (!mix || context_.stop.stop_requested()) {
+            if (!mix) {
                 return;
             }
             // The first one is the likeliest: of hides, which take long, by far.

@@ -7,8 +7,11 @@
 
 #include "fab/nest/exact.h"
 #include "fab/nest/shape.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 

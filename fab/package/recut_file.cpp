@@ -13,8 +13,11 @@
 #include "fab/nest/shape.h"
 #include "fab/package/package_files.h"
 #include "fab/package/records.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 
@@ -66,7 +69,7 @@ std::string rows(const JobResult& job) {
                 "<tr><td><b>{}</b></td><td>{}</td><td>{}</td><td class=n>{}</td>"
                 "<td class=n>{:.0f} × {:.0f} mm</td><td class=n>{:.1f} cm²</td></tr>\n",
                 escaped(piece.id), escaped(piece.strip), escaped(sheet.material), sheet.id,
-                size.x(), size.y(), ring_area(piece.outline) / 100.0);
+                size.x(), size.y(), signed_area(piece.outline) / 100.0);
         }
     }
     return out;

@@ -5,8 +5,12 @@
 #include <span>
 
 #include "fab/strips/overlap.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::angle_between;
+using geometry::turn_of;
 
 namespace {
 
@@ -42,7 +46,7 @@ double along_rung(const Polyline& side, std::size_t i, const Vector2d& rung, dou
     const Vector2d& before = side[i > 0 ? i - 1 : i];
     const Vector2d& after = side[i + 1 < side.size() ? i + 1 : i];
     const Vector2d tangent = (after - before).stableNormalized();
-    const double sine = std::abs(tangent.x() * rung.y() - tangent.y() * rung.x());
+    const double sine = std::abs(turn_of(tangent, rung));
     return clearance_mm / std::max(sine, 0.5);
 }
 
@@ -80,12 +84,10 @@ private:
             result.rung = Vector2d(way.y(), -way.x());
         }
         const auto sine = [&](const Vector2d& tangent) {
-            return tangent.squaredNorm() < 0.5
-                       ? 1.0
-                       : std::abs(tangent.x() * result.rung.y() - tangent.y() * result.rung.x());
+            return tangent.squaredNorm() < 0.5 ? 1.0 : std::abs(turn_of(tangent, result.rung));
         };
         result.sine = std::max(kLeastSine, std::min(sine(in), sine(out)));
-        result.turn = std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out));
+        result.turn = angle_between(in, out);
         return result;
     }
 

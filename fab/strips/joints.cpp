@@ -4,9 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/plane.h"
 #include "geometry/quads/quad_edges.h"
 
 namespace leafcutter::fab {
+
+using geometry::angle_between;
 
 namespace {
 
@@ -137,7 +140,7 @@ double turning_deg(const Unfolded& flat, std::size_t rung) {
     }
     const Vector2d in = middle(flat, rung) - middle(flat, rung - 1);
     const Vector2d out = middle(flat, rung + 1) - middle(flat, rung);
-    const double angle = std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out));
+    const double angle = angle_between(in, out);
     return angle * 180.0 / std::numbers::pi;
 }
 

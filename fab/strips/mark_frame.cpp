@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::fab {
+
+using geometry::turn_of;
 
 namespace {
 
 using Eigen::Vector2d;
-
-double turn_of(const Vector2d& a, const Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 std::size_t nearest(const Ring& ring, const Vector2d& point) {
     const auto nearer = [&](const Vector2d& a, const Vector2d& b) {

@@ -6,7 +6,11 @@
 
 #include <polyclipping/clipper.hpp>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::fab {
+
+using geometry::signed_area;
 
 namespace {
 
@@ -62,16 +66,6 @@ bool fold_back(const GridSegment& first, const GridSegment& second) {
     const std::int64_t ahead = (first.to.x - first.from.x) * (second.to.x - second.from.x) +
                                (first.to.y - first.from.y) * (second.to.y - second.from.y);
     return ahead < 0;
-}
-
-double doubled_area(const Ring& ring) {
-    double area = 0.0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const Vector2d& p = ring[i];
-        const Vector2d& q = ring[(i + 1) % ring.size()];
-        area += p.x() * q.y() - p.y() * q.x();
-    }
-    return area;
 }
 
 using Cell = std::pair<int, int>;
@@ -203,7 +197,7 @@ Ring snapped(const Ring& ring) {
 
 bool is_simple(const Ring& ring) {
     const std::size_t n = ring.size();
-    if (n < 3 || doubled_area(ring) <= 0.0) {
+    if (n < 3 || signed_area(ring) <= 0.0) {
         return false;
     }
     const std::vector<GridPoint> points = on_grid(ring);

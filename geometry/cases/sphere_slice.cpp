@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/error.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::geometry {
 namespace {
@@ -256,7 +257,7 @@ private:
             for (std::size_t i = 1; i + 1 < size; ++i) {
                 const Eigen::Vector2d a = piece[(first + i) % size].place - piece[first].place;
                 const Eigen::Vector2d b = piece[(first + i + 1) % size].place - piece[first].place;
-                least = std::min(least, a.x() * b.y() - a.y() * b.x());
+                least = std::min(least, turn_of(a, b));
             }
             return least;
         };

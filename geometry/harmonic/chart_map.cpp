@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::geometry {
 namespace {
@@ -20,12 +21,8 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-double determinant(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
-
 double doubled_area(const std::array<Eigen::Vector2d, 3>& corners) {
-    return determinant(corners[1] - corners[0], corners[2] - corners[0]);
+    return turn_of(corners[1] - corners[0], corners[2] - corners[0]);
 }
 
 bool is_bad(const std::array<Eigen::Vector2d, 3>& corners) {

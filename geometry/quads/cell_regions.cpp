@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::geometry {
 
 namespace {
@@ -32,7 +34,7 @@ public:
         for (std::size_t i = 2; i < size_; ++i) {
             const Vector2d u = corners_[i - 1].inside - corners_[0].inside;
             const Vector2d v = corners_[i].inside - corners_[0].inside;
-            sum += u.x() * v.y() - u.y() * v.x();
+            sum += turn_of(u, v);
         }
         return sum;
     }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::geometry {
 
 namespace {
@@ -13,10 +15,6 @@ using Eigen::Vector3d;
 
 // Smallest barycentric coordinate with which a point still counts as inside: rounding only.
 constexpr double kInside = -1e-9;
-
-double turn(const Vector2d& u, const Vector2d& v) {
-    return u.x() * v.y() - u.y() * v.x();
-}
 
 struct Range {
     Vector2d low;
@@ -29,10 +27,10 @@ Range range_of(const std::array<Vector2d, 3>& corners) {
 }
 
 Vector3d barycentric(const std::array<Vector2d, 3>& t, const Vector2d& p) {
-    const double area = turn(t[1] - t[0], t[2] - t[0]);
-    const double a = turn(t[2] - t[1], p - t[1]) / area;
-    const double b = turn(t[0] - t[2], p - t[2]) / area;
-    const double c = turn(t[1] - t[0], p - t[0]) / area;
+    const double area = turn_of(t[1] - t[0], t[2] - t[0]);
+    const double a = turn_of(t[2] - t[1], p - t[1]) / area;
+    const double b = turn_of(t[0] - t[2], p - t[2]) / area;
+    const double c = turn_of(t[1] - t[0], p - t[0]) / area;
     return {a, b, c};
 }
 

@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/plane.h"
+
 namespace leafcutter::geometry {
 
 namespace {
@@ -55,7 +57,7 @@ double gradient_integral(const TriangleMesh& mesh,
 double area_in_chart(const std::array<Vector2d, 3>& gf) {
     const Vector2d u = gf[1] - gf[0];
     const Vector2d v = gf[2] - gf[0];
-    return 0.5 * std::abs(u.x() * v.y() - u.y() * v.x());
+    return 0.5 * std::abs(turn_of(u, v));
 }
 
 // Where the level axis is a circle, bands are cut at its ends.

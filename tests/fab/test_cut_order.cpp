@@ -11,10 +11,13 @@
 #include "fab/cut/cut_order.h"
 #include "fab/cut/path_walk.h"
 #include "fab/cut/point_grid.h"
-#include "fab/nest/shape.h"
+#include "geometry/plane.h"
 #include "tests/support/cut_sheets.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
+
 namespace {
 
 const Eigen::Vector2d kHome = Eigen::Vector2d::Zero();

@@ -19,8 +19,12 @@
 #include "fab/export/formats.h"
 #include "fab/nest/random.h"
 #include "fab/nest/shape.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
+
 namespace {
 
 using Eigen::Vector2d;

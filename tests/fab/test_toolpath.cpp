@@ -9,10 +9,13 @@
 #include "fab/cut/motion.h"
 #include "fab/cut/toolpath.h"
 #include "fab/nest/collision.h"
-#include "fab/nest/shape.h"
 #include "geometry/error.h"
+#include "geometry/plane.h"
 
 namespace leafcutter::fab {
+
+using geometry::signed_area;
+
 namespace {
 
 Material paper() {
