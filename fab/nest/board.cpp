@@ -28,6 +28,11 @@ bool is_banded(const BoardPlan& plan) {
     return 2 * bands > plan.part_of.size();
 }
 
+bool has_many_copies(const BoardPlan& plan) {
+    constexpr std::size_t kMany = 8;
+    return plan.part_of.size() >= kMany * plan.parts.size();
+}
+
 Board::Board(const BoardPlan& plan)
     : plan_(plan),
       at_(plan.part_of.size()),

@@ -49,6 +49,9 @@ struct BoardPlan {
 // Whether all parts turn freely and most are long bands: those stack well in heaps and are pressed.
 bool is_banded(const BoardPlan& plan);
 
+// Whether there are, on the average, at least eight of each part.
+bool has_many_copies(const BoardPlan& plan);
+
 // The first `bins` sheets, the last one only up to `last_width`.
 struct Extent {
     int bins = 1;

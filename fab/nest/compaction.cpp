@@ -133,7 +133,7 @@ Search* ahead_of(const Searches& searches, double area) {
 // Those behind by more than a share of the area go on from the best.
 void catch_up(const Searches& searches, const Packing& best, double area, double behind) {
     for (const auto& search : searches) {
-        if (search->best_area() > area * (1.0 + behind)) {
+        if (!search->wanders() && search->best_area() > area * (1.0 + behind)) {
             search->adopt(best);
         }
     }

@@ -10,9 +10,8 @@ namespace {
 constexpr double kFirstShrink = 0.01;
 constexpr double kFinestShrink = 0.001;
 constexpr double kRestartsUntil = 0.5;  // Of the whole search.
-// Later, with many copies of each part (swaps of two change little), what stalls is squeezed.
-constexpr double kSqueeze = 0.02;
-constexpr std::size_t kManyCopies = 8;
+// With many copies of each part, where a swap of two changes little, hops take over sooner.
+constexpr double kHopsFrom = 0.25;
 constexpr std::size_t kStalled = 3;  // Attempts in vain at one target.
 // An attempt is given up after a while, counted in the whole search, and after more for large jobs.
 constexpr double kLongAttempt = 0.015;
@@ -30,13 +29,18 @@ Explorer::Explorer(const BoardPlan& plan, const Packing& start, std::uint64_t se
       swap_(plan),
       start_(start),
       best_(start),
-      best_area_(area_taken(plan, start.extent)) {
+      best_area_(area_taken(plan, start.extent)),
+      home_(start),
+      home_area_(best_area_) {
     board_.restore(best_.positions, best_.extent);
 }
 
 void Explorer::adopt(const Packing& better) {
     best_ = better;
     best_area_ = area_taken(plan_, better.extent);
+    home_ = best_;
+    home_area_ = best_area_;
+    hopping_ = false;
     failed_.clear();
     // An attempt at more than what is known to be possible is in vain.
     if (working_ && area_taken(plan_, target_) >= best_area_) {
@@ -88,9 +92,13 @@ void Explorer::begin_attempt() {
 
 void Explorer::begin_exploring() {
     constexpr double kMiddle = 0.5;
+    if (hopping_) {
+        begin_hop();
+        return;
+    }
     if (failed_.empty()) {
         target_ = extent_of_area(plan_, best_area_ * (1.0 - shrink_));
-        attempt(best_.positions, best_.extent, target_, squeezed_ ? random_.unit() : kMiddle);
+        attempt(best_.positions, best_.extent, target_, kMiddle);
         return;
     }
     // One of those that came near, a good one more likely, with two large parts swapped.
@@ -136,15 +144,26 @@ void Explorer::rehome(const std::vector<std::size_t>& homeless) {
 
 void Explorer::succeed() {
     working_ = false;
-    squeezed_ = false;
+    if (hopping_) {
+        hopping_ = false;
+        shrink_ = kFirstShrink;
+    }
     best_ = {board_.positions(), board_.extent()};
     best_area_ = area_taken(plan_, best_.extent);
     failed_.clear();
+    if (best_area_ <= home_area_) {
+        home_ = best_;
+        home_area_ = best_area_;
+    }
 }
 
 void Explorer::fail() {
     working_ = false;
     if (compressed_) {
+        return;
+    }
+    if (hopping_) {
+        ++hops_in_vain_;
         return;
     }
     if (shrink_ > kFinestShrink) {
@@ -163,10 +182,10 @@ void Explorer::fail() {
     if (failed_.size() < kStalled) {
         return;
     }
-    if (progress_ < kRestartsUntil) {
+    if (has_many_copies(plan_) && progress_ >= kHopsFrom) {
+        hop();
+    } else if (progress_ < kRestartsUntil) {
         restart();
-    } else if (board_.items() >= kManyCopies * plan_.parts.size()) {
-        squeeze();
     }
 }
 
@@ -179,13 +198,27 @@ void Explorer::restart() {
     failed_.clear();
 }
 
-// Parts wedged between the edges in rows as long as the sheet overlap by so little when it shrinks
-// a little that nothing moves them apart: by more, they must find other places. Where parts differ
-// swaps gain more (dagli, fu).
-void Explorer::squeeze() {
-    squeezed_ = true;
-    shrink_ = kSqueeze;
+// Copies wedged between the edges in rows as long as the sheet leave little but whole rows to gain,
+// and most of that is out of reach from where they lie: a few large parts change places with room
+// to do so, and the search comes down from there, worse at first.
+void Explorer::hop() {
+    hopping_ = true;
+    hopped_ = true;
+    hops_in_vain_ = 0;
     failed_.clear();
+}
+
+// With more room after each hop that came to nothing.
+void Explorer::begin_hop() {
+    constexpr double kWider = 0.02;
+    constexpr double kYetWider = 0.01;
+    constexpr int kSwaps = 3;
+    std::vector<Position> positions = home_.positions;
+    for (int i = 0; i < kSwaps; ++i) {
+        swap_.apply(positions, random_);
+    }
+    target_ = extent_of_area(plan_, home_area_ * (1.0 + kWider + kYetWider * hops_in_vain_));
+    attempt(std::move(positions), home_.extent, target_, random_.unit());
 }
 
 }  // namespace leafcutter::fab

@@ -26,6 +26,7 @@ public:
     const Packing& best() const override { return best_; }
     double best_area() const override { return best_area_; }
     std::int64_t evaluations() const override { return board_.evaluations(); }
+    bool wanders() const override { return hopped_ && !compressing(); }
     void adopt(const Packing& better) override;
 
 private:
@@ -46,7 +47,8 @@ private:
     void succeed();
     void fail();
     void restart();
-    void squeeze();
+    void hop();
+    void begin_hop();
     void rehome(const std::vector<std::size_t>& homeless);
 
     const BoardPlan& plan_;
@@ -56,15 +58,19 @@ private:
     PoseSearch search_;
     LargeSwap swap_;
     Packing start_;
-    Packing best_;  // Since the last restart.
+    Packing best_;  // Since the last restart or hop.
     double best_area_ = 0.0;
+    Packing home_;  // From which it hops: the best of all.
+    double home_area_ = 0.0;
     Extent target_;
     double shrink_ = 0.01;  // By which an attempt wants less area.
     double progress_ = 0.0;
     double begun_ = 0.0;  // Progress when the attempt began.
     std::int64_t begun_evaluations_ = 0;
     bool working_ = false;
-    bool squeezed_ = false;       // Without success since.
+    bool hopping_ = false;  // The attempt is a hop.
+    bool hopped_ = false;   // Ever.
+    int hops_in_vain_ = 0;
     bool compressed_ = false;     // The attempt is one of the compressing phase.
     std::vector<Failed> failed_;  // At the present target, least overlap first.
 };

@@ -26,6 +26,9 @@ public:
     virtual double best_area() const = 0;
     virtual std::int64_t evaluations() const = 0;
 
+    // Whether it seeks its own way, worse for a while, and shall not take over what others found.
+    virtual bool wanders() const { return false; }
+
     // Takes over what another search found. Better than its own, or else its own was refused.
     virtual void adopt(const Packing& better) = 0;
 };

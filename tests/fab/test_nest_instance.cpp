@@ -183,6 +183,39 @@ TEST(NestInstance, FillsAStripWithSquaresThatFitExactly) {
     EXPECT_GT(solve(instance, options, {}).density, 0.85);
 }
 
+// Eight of each of three tetrominoes: they lie in rows that leave nothing between them.
+NestInstance tetrominoes() {
+    NestInstance instance;
+    instance.strip_height = 60.004;
+    const std::vector<Ring> outlines{
+        {{0, 0}, {30, 0}, {30, 10}, {10, 10}, {10, 20}, {0, 20}},
+        {{0, 0}, {30, 0}, {30, 10}, {20, 10}, {20, 20}, {10, 20}, {10, 10}, {0, 10}},
+        {{0, 0}, {20, 0}, {20, 10}, {30, 10}, {30, 20}, {10, 20}, {10, 10}, {0, 10}}};
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        InstanceItem item;
+        item.id = static_cast<int>(i);
+        item.demand = 8;
+        item.allowed_deg = {0.0, 180.0};
+        item.outline = outlines[i];
+        instance.items.push_back(item);
+    }
+    return instance;
+}
+
+// Long enough for hops, of which each search makes its own.
+TEST(NestInstance, CopiesInRowsAreTheSameOnOneThreadAndTwo) {
+    const NestInstance instance = tetrominoes();
+    CompactionOptions options;
+    options.max_evaluations = 4'000'000;
+    geometry::Context two;
+    two.threads = 2;
+    const InstanceSolution solution = solve(instance, options, two);
+    expect_sound(instance, solution);
+    EXPECT_GT(solution.density, 0.8);
+    EXPECT_EQ(write_solution(instance, solution),
+              write_solution(instance, solve(instance, options, {})));
+}
+
 NestInstance hide_with_hole_and_zone() {
     NestInstance instance;
     InstanceItem plain;
