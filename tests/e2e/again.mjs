@@ -86,6 +86,7 @@ step('a cylinder is picked on the model and made higher by keyboard', async () =
     if ((await chosen.count()) > 0) break;
   }
   await chosen.waitFor();
+  assert.ok(await chosen.getByRole('slider').evaluate((slider) => slider === document.activeElement), 'keys go to what was picked');
   for (let press = 0; press < 12; press += 1) await page.keyboard.press('ArrowRight');
   await until(() => chosen.innerText(), (text) => /1\.5\d? ×/.test(text), 'a cylinder one and a half times as high');
   await picture(page, 'weights-light');

@@ -1,6 +1,6 @@
 // The whole page.
 
-import { useEffect, useRef } from 'preact/hooks';
+import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 
 import { t } from '../messages/messages.ts';
 import { sectionOf } from '../state/route.ts';
@@ -65,8 +65,8 @@ export function App() {
   const shown = useRef(route.value);
   const title = pageTitle();
   useEffect(() => void (document.title = title), [title]);
-  // A new page begins at its top, for eyes and for screen readers.
-  useEffect(() => {
+  // A new page begins at its top, for eyes and for screen readers; before it is painted, so that no key goes astray.
+  useLayoutEffect(() => {
     if (shown.current === route.value) return;
     shown.current = route.value;
     scrollTo(0, 0);

@@ -1,6 +1,6 @@
 // How high each cylinder is to be, beside the model on which they are picked.
 
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 
 import { count, figure } from '../../lib/format.ts';
 import { t } from '../../messages/messages.ts';
@@ -19,7 +19,8 @@ function HeightRow(props: {
 }) {
   const { edge, height, before, chosen } = props;
   const slider = useRef<HTMLInputElement>(null);
-  useEffect(() => {
+  // Before it is painted: keys pressed as soon as the row is seen to be chosen are meant for its slider.
+  useLayoutEffect(() => {
     if (chosen) slider.current?.focus();
   }, [chosen]);
   const times = height / before;
